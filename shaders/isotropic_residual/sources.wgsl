@@ -1,0 +1,100 @@
+// A thread: what the beams give to one cell and channel, Q0 and Q1 [W/m3] (DESIGN 6.3).
+
+#import "isotropic_residual/common.wgsl"
+#import "lib/beam.wgsl"
+#import "lib/transmittance.wgsl"
+
+struct SourceParams {
+    level: Level,
+    n_beams: u32,
+    packs_per_column: u32,
+    pad_0: u32,
+    pad_1: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: SourceParams;
+@group(1) @binding(0) var sigma_t: texture_3d<f32>;
+@group(1) @binding(1) var tau: texture_3d<f32>;
+@group(1) @binding(2) var<storage, read> beams: array<Beam>;
+@group(2) @binding(0) var sources: texture_storage_3d<rgba32float, write>;
+
+// Mean of exp(-k tau) over the four edges along an axis; corners numbered x + 2y + 4z.
+fn edge_mean(t: array<f32, 8>, k: f32, axis: u32) -> f32 {
+    var corners = t;
+    let bit = 1u << axis;
+    var sum = 0.0;
+    for (var n = 0u; n < 8u; n += 1u) {
+        if (n & bit) == 0u {
+            sum += mean_exp(k * corners[n], k * corners[n | bit]);
+        }
+    }
+    return 0.25 * sum;
+}
+
+fn largest_axis(v: vec3f) -> u32 {
+    let a = abs(v);
+    if a.x >= a.y && a.x >= a.z {
+        return 0u;
+    }
+    return select(2u, 1u, a.y >= a.z);
+}
+
+// Mean of 1 / r^2 [1/m2] over the cell at `cell`, for a light at `position`, in index space.
+fn mean_inverse_square(cell: vec3f, position: vec3f, cell_m: f32) -> f32 {
+    let line = cell - position;
+    if dot(line, line) >= 1.0 {
+        return 1.0 / (dot(line, line) * cell_m * cell_m);
+    }
+    // 8^3 points; within e = 0.62 of a sub-cell the mean over that ball, 3 / e^2.
+    let near = 0.62 / 8.0;
+    var sum = 0.0;
+    for (var n = 0u; n < 512u; n += 1u) {
+        let offset = (vec3f(vec3u(n & 7u, (n >> 3u) & 7u, n >> 6u)) + 0.5) / 8.0 - 0.5;
+        let r = line + offset;
+        let r2 = dot(r, r);
+        sum += select(1.0 / max(r2, near * near), 3.0 / (near * near), r2 < near * near);
+    }
+    return sum / (512.0 * cell_m * cell_m);
+}
+
+@compute @workgroup_size(8, 8, 1)
+fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
+    let level = params.level;
+    if any(id.xy >= level.dims.xy) || id.z >= level.dims.z * level.n_channels {
+        return;
+    }
+    let c = id.z / level.dims.z;
+    let cell = vec3u(id.xy, id.z % level.dims.z);
+    let channel = level.channels[c];
+    let extinction = textureLoad(sigma_t, cell, 0).x;
+    var total = vec4f(0.0);
+    if extinction > 0.0 {
+        let corners = level.dims + 1u;
+        for (var first = 0u; first < params.n_beams; first += 4u) {
+            let origin = pack_origin(first / 4u, corners, params.packs_per_column) + cell;
+            var depths: array<vec4f, 8>;
+            for (var n = 0u; n < 8u; n += 1u) {
+                depths[n] = textureLoad(tau, origin + vec3u(n & 1u, (n >> 1u) & 1u, n >> 2u), 0);
+            }
+            for (var n = 0u; n < min(4u, params.n_beams - first); n += 1u) {
+                let beam = beams[first + n];
+                var one: array<f32, 8>;
+                for (var m = 0u; m < 8u; m += 1u) {
+                    one[m] = depths[m][n];
+                }
+                var direction = beam.place.xyz;
+                var axis = largest_axis(direction);
+                var spreading = 1.0;
+                if beam.place.w > 0.0 {
+                    let line = vec3f(cell) - beam.place.xyz;
+                    direction = line / max(length(line), 1e-6);
+                    axis = largest_axis(0.5 * vec3f(level.dims) - beam.place.xyz);
+                    spreading = mean_inverse_square(vec3f(cell), beam.place.xyz, level.cell_m);
+                }
+                let mean = beam.power[c] * spreading * edge_mean(one, channel.k, axis);
+                total += mean * vec4f(1.0, level.g_star * beam.power.w * direction);
+            }
+        }
+    }
+    textureStore(sources, id, extinction * channel.scatter * total);
+}

@@ -1,0 +1,13 @@
+// Beams in index space, and the atlas of their optical depths at the corners of cells.
+
+struct Beam {
+    // Parallel: unit direction of travel, w = 0. Point: position in index space, w = 1.
+    place: vec4f,
+    // Irradiance [W/m2] or intensity [W/sr] in xyz, spread a0 in w.
+    power: vec4f,
+}
+
+// First texel of a pack of four beams: packs stand along z, then along y.
+fn pack_origin(pack: u32, corners: vec3u, packs_per_column: u32) -> vec3u {
+    return vec3u(0u, (pack / packs_per_column) * corners.y, (pack % packs_per_column) * corners.z);
+}

@@ -1,0 +1,29 @@
+// Optical depth from a point to a light, by samples at most a cell apart.
+
+#import "lib/shape.wgsl"
+
+// Trilinear extinction [1/m] at an index position. The field's outermost cells are void, so that
+// clamping to them is the same as a background of 0.
+fn extinction(sigma_t: texture_3d<f32>, linear_clamp: sampler, p: vec3f) -> f32 {
+    let size = vec3f(textureDimensions(sigma_t));
+    return textureSampleLevel(sigma_t, linear_clamp, (p + 0.5) / size, 0.0).x;
+}
+
+// tau from `p` along the unit vector `to_light`, no further than `reach` cells; cell_m is a cell's edge.
+fn walk(sigma_t: texture_3d<f32>, linear_clamp: sampler, shape: Shape, cell_m: f32, p: vec3f, to_light: vec3f, reach: f32) -> f32 {
+    let clipped = ray_shape(shape, p, to_light);
+    let span = min(clipped.y, reach) - clipped.x;
+    if span <= 0.0 {
+        return 0.0;
+    }
+    if shape.kind != VOXELS {
+        return shape.sigma_t * span * cell_m;
+    }
+    let n_steps = ceil(span);
+    let dt = span / n_steps;
+    var sum = 0.0;
+    for (var n = 0.0; n < n_steps; n += 1.0) {
+        sum += extinction(sigma_t, linear_clamp, p + (clipped.x + (n + 0.5) * dt) * to_light);
+    }
+    return sum * dt * cell_m;
+}

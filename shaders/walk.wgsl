@@ -1,0 +1,44 @@
+// A thread: the optical depth from one corner of a cell to each of four lights, walked exactly.
+// Serves parallel beams and point lights alike.
+
+#import "lib/walk.wgsl"
+#import "lib/beam.wgsl"
+
+struct WalkParams {
+    shape: Shape,
+    // Texel of the atlas where this pack begins.
+    origin: vec3u,
+    n_beams: u32,
+    corners: vec3u,
+    cell_m: f32,
+    beams: array<Beam, 4>,
+}
+
+@group(0) @binding(0) var<uniform> params: WalkParams;
+@group(1) @binding(0) var sigma_t: texture_3d<f32>;
+@group(1) @binding(1) var linear_clamp: sampler;
+@group(2) @binding(0) var tau: texture_storage_3d<rgba16float, write>;
+
+// The largest finite half float is 65504; exp(-k tau) is 0 in f32 long before, for every |g| <= 0.999.
+const TAU_MAX: f32 = 65000.0;
+
+@compute @workgroup_size(8, 8, 1)
+fn walk_corners(@builtin(global_invocation_id) id: vec3u) {
+    if any(id >= params.corners) {
+        return;
+    }
+    let p = vec3f(id) - 0.5;
+    var depths = vec4f(0.0);
+    for (var n = 0u; n < params.n_beams; n += 1u) {
+        let place = params.beams[n].place;
+        var to_light = -place.xyz;
+        var reach = 1e30;
+        if place.w > 0.0 {
+            let line = place.xyz - p;
+            reach = length(line);
+            to_light = line / max(reach, 1e-6);
+        }
+        depths[n] = min(walk(sigma_t, linear_clamp, params.shape, params.cell_m, p, to_light, reach), TAU_MAX);
+    }
+    textureStore(tau, params.origin + id, depths);
+}

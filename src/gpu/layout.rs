@@ -1,0 +1,58 @@
+//! The check that a Rust struct and its WGSL mirror have the same members at the same offsets.
+//!
+//! A struct that is sent to a shader is declared with [`mirror!`](crate::mirror), which keeps the
+//! list of its members; `tests/shaders.rs` compares that list with what naga reads from the WGSL.
+
+use super::{GpuError, Shader};
+
+/// A struct whose members are listed for the layout test.
+pub trait Mirror {
+    /// The WGSL struct's name.
+    const NAME: &'static str;
+    /// Members in order: name, byte offset.
+    fn members() -> Vec<(&'static str, usize)>;
+    /// Size in bytes.
+    fn size() -> usize;
+}
+
+/// Declares a `#[repr(C)]` plain-data struct together with its [`Mirror`].
+#[macro_export]
+macro_rules! mirror {
+    ($(#[$doc:meta])* $vis:vis struct $name:ident { $($(#[$member_doc:meta])* $member:ident : $kind:ty,)* }) => {
+        $(#[$doc])*
+        #[repr(C)]
+        #[derive(Debug, Clone, Copy, PartialEq, bytemuck::Pod, bytemuck::Zeroable)]
+        $vis struct $name { $($(#[$member_doc])* pub $member: $kind,)* }
+
+        impl $crate::gpu::Mirror for $name {
+            const NAME: &'static str = stringify!($name);
+
+            fn members() -> Vec<(&'static str, usize)> {
+                vec![$((stringify!($member), std::mem::offset_of!($name, $member)),)*]
+            }
+
+            fn size() -> usize {
+                std::mem::size_of::<$name>()
+            }
+        }
+    };
+}
+
+/// Members (name, offset) and size of a struct in an expanded shader, as naga lays them out.
+///
+/// # Errors
+/// [`GpuError::Shader`] where the shader is invalid or has no such struct.
+pub fn wgsl_members(shader: &Shader, name: &str) -> Result<(Vec<(String, usize)>, usize), GpuError> {
+    let module = shader.validate()?;
+    let found = module.types.iter().find_map(|(_, kind)| match &kind.inner {
+        naga::TypeInner::Struct { members, span } if kind.name.as_deref() == Some(name) => Some((
+            members
+                .iter()
+                .map(|member| (member.name.clone().unwrap_or_default(), member.offset as usize))
+                .collect(),
+            *span as usize,
+        )),
+        _ => None,
+    });
+    found.ok_or_else(|| GpuError::Shader(format!("no struct {name} in the shader")))
+}

@@ -1,0 +1,137 @@
+//! A stage: one compiled entry point, and its bindings.
+
+use std::sync::Arc;
+
+use wgpu::util::DeviceExt;
+
+use super::{Buffer, Gpu, GpuError, Sampler, Shader, Texture};
+
+/// A compiled compute pipeline with its three bind group layouts.
+pub(super) struct Pipeline {
+    text: String,
+    pub(super) pipeline: wgpu::ComputePipeline,
+    workgroup: [u32; 3],
+}
+
+/// A stage that can be bound and dispatched.
+#[derive(Clone)]
+pub struct Stage {
+    label: String,
+    pipeline: Arc<Pipeline>,
+}
+
+/// One resource in a list of inputs or outputs.
+pub enum Bind<'a> {
+    /// A texture, sampled, loaded or written as the shader says.
+    Texture(&'a Texture),
+    /// A whole buffer.
+    Buffer(&'a Buffer),
+    /// `bytes` of a buffer from `offset`, a multiple of 256.
+    Window(&'a Buffer, u64, u64),
+    /// A sampler.
+    Sampler(&'a Sampler),
+}
+
+impl<'a> Bind<'a> {
+    fn resource(&self) -> wgpu::BindingResource<'a> {
+        match *self {
+            Bind::Texture(texture) => wgpu::BindingResource::TextureView(&texture.view),
+            Bind::Buffer(buffer) => buffer.buffer.as_entire_binding(),
+            Bind::Window(buffer, offset, bytes) => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+                buffer: &buffer.buffer,
+                offset,
+                size: std::num::NonZeroU64::new(bytes),
+            }),
+            Bind::Sampler(sampler) => wgpu::BindingResource::Sampler(&sampler.0),
+        }
+    }
+}
+
+/// A stage with its resources, ready to be dispatched any number of times.
+pub struct Bound {
+    pub(super) label: String,
+    pub(super) pipeline: Arc<Pipeline>,
+    pub(super) groups: [wgpu::BindGroup; 3],
+}
+
+impl Gpu {
+    /// The stage of `shaders/NAME.wgsl` with the given import choices; compiled once.
+    ///
+    /// # Errors
+    /// [`GpuError::Shader`] names file and line.
+    pub fn stage(&self, name: &str, choices: &[(&str, String)]) -> Result<Stage, GpuError> {
+        let shader = Shader::expand(&format!("{name}.wgsl"), choices)?;
+        let key = format!("{name} {choices:?}");
+        let known = self.pipelines.lock().unwrap().get(&key).cloned();
+        let pipeline = match known {
+            Some(pipeline) if pipeline.text == shader.text => pipeline,
+            _ => {
+                let pipeline = Arc::new(self.compile(name, shader)?);
+                self.pipelines.lock().unwrap().insert(key, Arc::clone(&pipeline));
+                pipeline
+            }
+        };
+        Ok(Stage { label: name.to_owned(), pipeline })
+    }
+
+    fn compile(&self, name: &str, shader: Shader) -> Result<Pipeline, GpuError> {
+        let module = shader.validate()?;
+        let workgroup = module.entry_points[0].workgroup_size;
+        let scope = self.device.push_error_scope(wgpu::ErrorFilter::Validation);
+        let module = self.device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(shader.text.as_str().into()),
+        });
+        let pipeline = self.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(name),
+            layout: None,
+            module: &module,
+            entry_point: None,
+            compilation_options: wgpu::PipelineCompilationOptions::default(),
+            cache: None,
+        });
+        if let Some(error) = pollster::block_on(scope.pop()) {
+            return Err(GpuError::Shader(format!("shaders/{name}.wgsl: {error}")));
+        }
+        Ok(Pipeline { text: shader.text, pipeline, workgroup })
+    }
+}
+
+impl Stage {
+    /// Binds parameters (group 0, binding 0), inputs (group 1) and outputs (group 2).
+    pub fn bind<P: bytemuck::Pod>(&self, gpu: &Gpu, params: &P, inputs: &[Bind], outputs: &[Bind]) -> Bound {
+        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
+            label: Some(&self.label),
+            contents: bytemuck::bytes_of(params),
+            usage: wgpu::BufferUsages::UNIFORM,
+        });
+        let group = |index: u32, entries: &[wgpu::BindGroupEntry]| {
+            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+                label: Some(&self.label),
+                layout: &self.pipeline.pipeline.get_bind_group_layout(index),
+                entries,
+            })
+        };
+        let list = |index: u32, binds: &[Bind]| {
+            let entries: Vec<wgpu::BindGroupEntry> = binds
+                .iter()
+                .enumerate()
+                .map(|(idx, bind)| wgpu::BindGroupEntry { binding: idx as u32, resource: bind.resource() })
+                .collect();
+            group(index, &entries)
+        };
+        let params = group(0, &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }]);
+        Bound {
+            label: self.label.clone(),
+            pipeline: Arc::clone(&self.pipeline),
+            groups: [params, list(1, inputs), list(2, outputs)],
+        }
+    }
+}
+
+impl Bound {
+    /// Workgroups that cover `threads`.
+    pub(super) fn workgroups(&self, threads: [usize; 3]) -> [u32; 3] {
+        std::array::from_fn(|axis| (threads[axis] as u32).div_ceil(self.pipeline.workgroup[axis]).max(1))
+    }
+}

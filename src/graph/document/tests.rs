@@ -1,0 +1,181 @@
+use super::*;
+
+const READABLE: &str = r#"{
+  "tyndall": 1,
+  "about": "a \"cloud\" at noon",
+  "nodes": {
+    "sun": {
+      "type": "sun",
+      "irradiance": [20, 18.5, 1e-7],
+      "direction": [0.3, -0.4, -0.0]
+    },
+    "medium": {
+      "type": "medium",
+      "g": 3.0,
+      "emission": {
+        "flame": "flame"
+      },
+      "nothing": null,
+      "empty": {},
+      "list": []
+    }
+  },
+  "wires": [
+    "sun.light -> medium.lights"
+  ],
+  "layout": {
+    "sun": [0, -10.5]
+  }
+}
+"#;
+
+fn error(text: &str) -> String {
+    let parsed = Document::parse(text, Path::new(""));
+    parsed.expect_err("a mistake").to_string()
+}
+
+/// The message for a graph that is right but for `nodes` and what follows.
+fn error_in(rest: &str) -> String {
+    error(&format!(r#"{{"tyndall": 1, {rest}}}"#))
+}
+
+#[test]
+fn round_trip_keeps_text() {
+    let document = Document::parse(READABLE, Path::new("here")).unwrap();
+    assert_eq!(document.to_json(), READABLE);
+    assert_eq!(document.base, Path::new("here"));
+    assert_eq!(document.layout["sun"], [0.0, -10.5]);
+    assert_eq!(document.wires[0].to.port, "lights");
+}
+
+#[test]
+fn type_may_stand_anywhere_and_order_is_kept() {
+    let text = r#"{"nodes": {"b": {"z": 1, "type": "t", "a": 2}, "a": {"type": "t"}}, "tyndall": 1}"#;
+    let document = Document::parse(text, Path::new("")).unwrap();
+    let params: Vec<&str> = document.nodes["b"].params.keys().map(String::as_str).collect();
+    assert_eq!(params, ["z", "a"]);
+    assert_eq!(document.node_names(), "b, a");
+    let again = Document::parse(&document.to_json(), Path::new("")).unwrap();
+    assert_eq!(again, document);
+}
+
+#[test]
+fn wires_do_not_mind_blanks() {
+    let wire: Wire = " a.x->  b.y ".parse().unwrap();
+    assert_eq!(wire.to_string(), "a.x -> b.y");
+    for wrong in ["", "a.x", "a.x -> b", "a.x b.y", "a.x -> b.y.z", "a. -> b.y"] {
+        assert!(wrong.parse::<Wire>().is_err(), "{wrong}");
+    }
+}
+
+#[test]
+fn syntax_and_names_given_twice() {
+    assert_eq!(error("{"), "the graph is not valid JSON: EOF while parsing an object at line 1 column 1");
+    assert_eq!(
+        error("{\"tyndall\": 1} x"),
+        "the graph is not valid JSON: trailing characters at line 1 column 16"
+    );
+    assert_eq!(
+        error_in(r#""nodes": {"a": {"type": "t"}, "a": {"type": "t"}}"#),
+        "the graph is not valid JSON: 'nodes.a' is given twice; keep one at line 1 column 48"
+    );
+    assert_eq!(
+        error_in("\"nodes\": {\"a\": {\"type\": \"t\",\n\"g\": 1, \"g\": 1}}"),
+        "the graph is not valid JSON: 'nodes.a.g' is given twice; keep one at line 2 column 11"
+    );
+    assert_eq!(
+        error_in(r#""nodes": {"a": {"type": "t", "x": 1e999}}"#),
+        "the graph is not valid JSON: number out of range at line 1 column 54"
+    );
+}
+
+#[test]
+fn versions() {
+    assert_eq!(
+        error(r#"{"nodes": {}}"#),
+        "this is no graph: the field \"tyndall\" is missing; write \"tyndall\": 1"
+    );
+    for wrong in ["0", "1.5", "-1", "\"1\""] {
+        assert_eq!(
+            error(&format!(r#"{{"tyndall": {wrong}, "nodes": {{}}}}"#)),
+            format!("the version \"tyndall\" is {wrong}; write a whole number from 1 to 1")
+        );
+    }
+    assert_eq!(
+        error(r#"{"tyndall": 2, "nodes": {}}"#),
+        "the graph is of version 2, this program reads up to 1; use a later one"
+    );
+}
+
+#[test]
+fn migrations_run_from_the_version_of_the_file_on() {
+    let steps: [Migration; 2] = [
+        |root| drop(root.insert("one".to_owned(), Json::Null)),
+        |root| drop(root.insert("two".to_owned(), Json::Null)),
+    ];
+    let migrated = |version: u64| {
+        let mut root = Map::from_iter([("tyndall".to_owned(), version.into())]);
+        migrate(&mut root, &steps).map(|()| root.keys().skip(1).cloned().collect::<Vec<_>>())
+    };
+    assert_eq!(migrated(1).unwrap(), ["one", "two"]);
+    assert_eq!(migrated(2).unwrap(), ["two"]);
+    assert!(migrated(3).unwrap().is_empty());
+    assert!(migrated(4).is_err());
+}
+
+#[test]
+fn every_field_says_its_form() {
+    assert_eq!(error("[1]"), "the graph is [1]; write an object");
+    assert_eq!(error(r#"{"tyndall": 1}"#), "the field \"nodes\" is missing; write \"nodes\": {}");
+    assert_eq!(
+        error_in(r#""nodes": {}, "wire": [], "about": 3, "wires": {}, "layout": []"#),
+        "unknown field 'wire'; did you mean 'wires'? allowed are tyndall, about, nodes, wires, layout\n\
+         about is 3; write a string\n\
+         wires is {}; write a list of wires\n\
+         layout is []; write an object of [x, y]"
+    );
+    assert_eq!(error_in(r#""nodes": 1"#), "nodes is 1; write an object of nodes by name");
+    assert_eq!(
+        error_in(r#""nodes": {"a b": {"type": "t"}, "c": 1, "d": {"type": 1}, "e": {}}"#),
+        "'a b' is no name of a node; write letters, digits, '_' and '-'\n\
+         nodes.c is 1; write an object\n\
+         nodes.d.type is 1; write a string\n\
+         nodes.e has no \"type\"; 'tyndall nodes' lists them"
+    );
+    assert_eq!(
+        error_in(
+            r#""nodes": {"sun": {"type": "t"}}, "wires": ["a -> b", 1], "layout": {"sin": [0, 0], "sun": [0]}"#
+        ),
+        "wires[0] is \"a -> b\"; write \"node.output -> node.input\"\n\
+         wires[1] is 1; write \"node.output -> node.input\"\n\
+         layout.sun is [0]; write [x, y]\n\
+         layout.sin is the place of no node; did you mean 'sun'? remove it or add the node"
+    );
+}
+
+#[test]
+fn a_missing_file_names_itself() {
+    let error = Document::load(Path::new("no/such.json")).unwrap_err();
+    let text = error.to_string();
+    assert!(text.starts_with("cannot read the graph 'no/such.json': "), "{text}");
+}
+
+#[test]
+fn truth_graphs_parse_and_round_trip() {
+    let Some(dir) = crate::shared_dir() else {
+        eprintln!("skipped: no shared files");
+        return;
+    };
+    let dir = dir.join("truth");
+    let entries = std::fs::read_dir(&dir).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let graphs: Vec<PathBuf> = paths.filter(|path| path.to_string_lossy().ends_with(".graph.json")).collect();
+    assert!(!graphs.is_empty());
+    for path in graphs {
+        let document = Document::load(&path).unwrap();
+        assert_eq!(document.base, dir);
+        assert!(document.nodes.len() > 5 && document.wires.len() > 5);
+        let again = Document::parse(&document.to_json(), &dir).unwrap();
+        assert_eq!(again, document, "{}", path.display());
+    }
+}

@@ -1,0 +1,38 @@
+//! The node graph: what nodes are, the file, its checks, the order, the cache and the evaluation.
+//!
+//! From text to values: `Document` (the file as it stands) → `check` (everything wrong with it, at once)
+//! → `Plan` (what to run, in which order) → `evaluate` (runs it through a `Host`, with a `Cache` by
+//! `Key`). What a node is stands in its `NodeSpec` alone. The graph knows no concrete node, no GPU and
+//! no UI: values are opaque, and the host that runs nodes is handed in.
+//!
+//! Data flow can be read as: names and JSON → validated parameters → keys → values.
+
+pub mod cache;
+pub mod check;
+pub mod document;
+pub mod edit;
+pub mod eval;
+pub mod key;
+mod node;
+pub mod params;
+pub mod plan;
+pub mod spec;
+mod suggest;
+pub mod value;
+
+#[cfg(test)]
+mod toy;
+
+pub use cache::Cache;
+pub use check::{Problem, check};
+pub use document::{Document, DocumentError, End, Node, Wire};
+pub use edit::SetError;
+pub use eval::{
+    CancelToken, Evaluation, Event, Host, Inputs, NodeError, NodeJob, Outcome, Outputs, evaluate,
+};
+pub use key::Key;
+pub use params::{ParamProblem, ParamValue, Params};
+pub use plan::{Job, Plan, Source, Target, Work};
+pub use spec::{Catalog, Category, Limits, NodeSpec, ParamKind, ParamSpec, PortSpec, PortType};
+pub use suggest::did_you_mean;
+pub use value::Value;

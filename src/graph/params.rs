@@ -1,0 +1,321 @@
+//! Parameters of one node, read from the file's JSON against its `ParamSpec`s: every value has its
+//! declared form, is finite and inside the hard limits, and defaults are filled in.
+//!
+//! A node asks by name and gets a plain value; asking for a name or form that its spec does not declare
+//! is our own mistake and panics. Nothing is clamped: what is outside is a problem that names the
+//! allowed range. Relative paths are joined to the folder of the graph here, once. Tested for every
+//! form: what is taken, and the exact text of what is refused.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Map, Value as Json};
+
+use super::spec::{Default, ParamKind, ParamSpec};
+use super::suggest::did_you_mean;
+
+/// Validated parameters, in the order of the spec.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Params {
+    entries: Vec<(&'static str, ParamValue)>,
+}
+
+/// One validated value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ParamValue {
+    /// Not set.
+    Null,
+    /// A finite number.
+    Float(f64),
+    /// A whole number.
+    Int(i64),
+    /// true or false.
+    Bool(bool),
+    /// A string or a choice.
+    Text(String),
+    /// A path, already joined to the graph's folder.
+    Path(PathBuf),
+    /// A vector, color or direction.
+    Floats(Vec<f64>),
+    /// A record.
+    Record(Params),
+}
+
+/// What is wrong with one parameter.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ParamProblem {
+    /// The parameter, `emission.flame` inside a record.
+    pub field: String,
+    /// What was found, what is allowed, what to do; names the parameter.
+    pub message: String,
+}
+
+impl Params {
+    /// Reads `given` (the node's object without its `type`). Relative paths start at `base`.
+    ///
+    /// # Errors
+    /// All problems at once, in the order of `given`, then what is missing.
+    pub fn resolve(
+        specs: &'static [ParamSpec],
+        given: &Map<String, Json>,
+        base: &Path,
+    ) -> Result<Self, Vec<ParamProblem>> {
+        resolve_in("", specs, given, base)
+    }
+
+    /// The parameters of a node that says nothing but its type.
+    ///
+    /// # Errors
+    /// Names the parameters that have no default.
+    pub fn defaults(specs: &'static [ParamSpec]) -> Result<Self, Vec<ParamProblem>> {
+        Self::resolve(specs, &Map::new(), Path::new(""))
+    }
+
+    /// All values in the order of the spec.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &ParamValue)> {
+        self.entries.iter().map(|(name, value)| (*name, value))
+    }
+
+    /// Whether a parameter that may be null has a value.
+    pub fn is_set(&self, name: &str) -> bool {
+        *self.get(name) != ParamValue::Null
+    }
+
+    /// A number; whole numbers too.
+    pub fn f64(&self, name: &str) -> f64 {
+        match self.get(name) {
+            ParamValue::Float(x) => *x,
+            other => mistake(name, "a number", other),
+        }
+    }
+
+    /// A whole number.
+    pub fn i64(&self, name: &str) -> i64 {
+        match self.get(name) {
+            ParamValue::Int(i) => *i,
+            other => mistake(name, "a whole number", other),
+        }
+    }
+
+    /// true or false.
+    pub fn bool(&self, name: &str) -> bool {
+        match self.get(name) {
+            ParamValue::Bool(b) => *b,
+            other => mistake(name, "a bool", other),
+        }
+    }
+
+    /// A string or a choice.
+    pub fn text(&self, name: &str) -> &str {
+        match self.get(name) {
+            ParamValue::Text(text) => text,
+            other => mistake(name, "a string", other),
+        }
+    }
+
+    /// A path; a relative one has been joined to the graph's folder.
+    pub fn path(&self, name: &str) -> &Path {
+        match self.get(name) {
+            ParamValue::Path(path) => path,
+            other => mistake(name, "a path", other),
+        }
+    }
+
+    /// A color.
+    pub fn rgb(&self, name: &str) -> [f64; 3] {
+        self.vec(name)
+    }
+
+    /// `N` numbers: a vector, a color, or a direction as it was written.
+    pub fn vec<const N: usize>(&self, name: &str) -> [f64; N] {
+        match self.get(name) {
+            ParamValue::Floats(values) if values.len() == N => std::array::from_fn(|axis| values[axis]),
+            other => mistake(name, "numbers of that count", other),
+        }
+    }
+
+    /// A direction, made unit length.
+    pub fn unit(&self, name: &str) -> [f64; 3] {
+        let v: [f64; 3] = self.vec(name);
+        // Scaled by the largest component first, so that squares neither overflow nor vanish.
+        let largest = v.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+        let scaled = v.map(|x| x / largest);
+        let length = scaled.iter().map(|x| x * x).sum::<f64>().sqrt();
+        scaled.map(|x| x / length)
+    }
+
+    /// A record, `None` when it is null.
+    pub fn record(&self, name: &str) -> Option<&Params> {
+        match self.get(name) {
+            ParamValue::Record(params) => Some(params),
+            ParamValue::Null => None,
+            other => mistake(name, "a record", other),
+        }
+    }
+
+    fn get(&self, name: &str) -> &ParamValue {
+        let entry = self.entries.iter().find(|(known, _)| *known == name);
+        let (_, value) = entry.unwrap_or_else(|| panic!("parameter '{name}' is not declared"));
+        value
+    }
+}
+
+fn mistake(name: &str, asked: &str, found: &ParamValue) -> ! {
+    panic!("parameter '{name}' was asked for as {asked} but is {found:?}")
+}
+
+fn resolve_in(
+    prefix: &str,
+    specs: &'static [ParamSpec],
+    given: &Map<String, Json>,
+    base: &Path,
+) -> Result<Params, Vec<ParamProblem>> {
+    let mut problems = Vec::new();
+    for name in given.keys() {
+        if !specs.iter().any(|spec| spec.name == name) {
+            problems.push(ParamProblem {
+                field: format!("{prefix}{name}"),
+                message: unknown_param(&format!("{prefix}{name}"), name, specs),
+            });
+        }
+    }
+    let mut entries = Vec::with_capacity(specs.len());
+    for spec in specs {
+        let field = format!("{prefix}{}", spec.name);
+        let default = spec.default_json();
+        let result = match given.get(spec.name).or(default.as_ref()) {
+            Some(json) => parse(&field, spec, json, base),
+            None => Err(vec![ParamProblem {
+                message: format!("{field} is missing; write {}", spec.form()),
+                field,
+            }]),
+        };
+        match result {
+            Ok(value) => entries.push((spec.name, value)),
+            Err(found) => problems.extend(found),
+        }
+    }
+    if problems.is_empty() { Ok(Params { entries }) } else { Err(problems) }
+}
+
+/// Text for a parameter `name`, shown as `field`, that is not among `specs`.
+pub(super) fn unknown_param(field: &str, name: &str, specs: &[ParamSpec]) -> String {
+    let names: Vec<&str> = specs.iter().map(|spec| spec.name).collect();
+    let allowed = if names.is_empty() {
+        "none are taken here".to_owned()
+    } else {
+        format!("allowed are {}", names.join(", "))
+    };
+    let near = did_you_mean(name, names.iter().copied());
+    format!("unknown parameter '{field}';{near} {allowed}")
+}
+
+/// One value against its spec; `field` is its name in messages.
+///
+/// # Errors
+/// What is wrong, each component and record member on its own.
+pub(super) fn parse(
+    field: &str,
+    spec: &ParamSpec,
+    json: &Json,
+    base: &Path,
+) -> Result<ParamValue, Vec<ParamProblem>> {
+    let refuse = |message: String| Err(vec![ParamProblem { field: field.to_owned(), message }]);
+    let wrong_form = || refuse(format!("{field} is {}; write {}", describe(json), spec.form()));
+    match (spec.kind, json) {
+        (_, Json::Null) if spec.default == Default::Null => Ok(ParamValue::Null),
+        (ParamKind::Float, Json::Number(_)) => Ok(ParamValue::Float(in_limits(field, spec, json)?[0])),
+        (ParamKind::Int, Json::Number(number)) => {
+            let Some(whole) = whole(number) else {
+                return wrong_form();
+            };
+            in_limits(field, spec, json)?;
+            Ok(ParamValue::Int(whole))
+        }
+        (ParamKind::Bool, Json::Bool(b)) => Ok(ParamValue::Bool(*b)),
+        (ParamKind::Text, Json::String(text)) => Ok(ParamValue::Text(text.clone())),
+        (ParamKind::Choice(choices), Json::String(text)) => {
+            if choices.contains(&text.as_str()) {
+                return Ok(ParamValue::Text(text.clone()));
+            }
+            let near = did_you_mean(text, choices.iter().copied());
+            refuse(format!("{field} is '{text}';{near} allowed are {}", choices.join(", ")))
+        }
+        (ParamKind::Path | ParamKind::OutPath, Json::String(text)) if text.is_empty() => {
+            refuse(format!("{field} is empty; write {}", spec.form()))
+        }
+        (ParamKind::Path | ParamKind::OutPath, Json::String(text)) => Ok(ParamValue::Path(base.join(text))),
+        (ParamKind::Vector(count), Json::Array(items)) if all_numbers(items, count) => {
+            Ok(ParamValue::Floats(in_limits(field, spec, json)?))
+        }
+        (ParamKind::Rgb, Json::Array(items)) if all_numbers(items, 3) => {
+            Ok(ParamValue::Floats(in_limits(field, spec, json)?))
+        }
+        (ParamKind::Rgb, Json::Number(_)) => {
+            let grey = in_limits(field, spec, json)?[0];
+            Ok(ParamValue::Floats(vec![grey; 3]))
+        }
+        (ParamKind::Direction, Json::Array(items)) if all_numbers(items, 3) => {
+            let values = in_limits(field, spec, json)?;
+            if values.iter().all(|x| *x == 0.0) {
+                return refuse(format!("{field} has no length; write {}", spec.form()));
+            }
+            Ok(ParamValue::Floats(values))
+        }
+        (ParamKind::Record(specs), Json::Object(given)) => {
+            resolve_in(&format!("{field}."), specs, given, base).map(ParamValue::Record)
+        }
+        _ => wrong_form(),
+    }
+}
+
+fn all_numbers(items: &[Json], count: usize) -> bool {
+    items.len() == count && items.iter().all(Json::is_number)
+}
+
+/// `3` and `3.0` are whole; `3.5` and what an i64 cannot hold are not.
+fn whole(number: &serde_json::Number) -> Option<i64> {
+    number.as_i64().or_else(|| {
+        let x = number.as_f64()?;
+        // Beyond 2^53 a float no longer says which whole number was meant.
+        (x.fract() == 0.0 && x.abs() <= 9_007_199_254_740_992.0).then_some(x as i64)
+    })
+}
+
+/// The numbers of `json` (one or an array of them), each inside the hard limits.
+fn in_limits(field: &str, spec: &ParamSpec, json: &Json) -> Result<Vec<f64>, Vec<ParamProblem>> {
+    let one = std::slice::from_ref(json);
+    let items = json.as_array().map_or(one, Vec::as_slice);
+    let mut values = Vec::with_capacity(items.len());
+    let mut problems = Vec::new();
+    for (axis, item) in items.iter().enumerate() {
+        let x = item.as_f64().unwrap_or(f64::NAN);
+        values.push(x);
+        if spec.hard.contains(x) {
+            continue;
+        }
+        let component = match json {
+            Json::Array(_) => format!("{field}[{axis}]"),
+            _ => field.to_owned(),
+        };
+        let default = spec.default_json().unwrap_or_default();
+        problems.push(ParamProblem {
+            field: field.to_owned(),
+            message: format!("{component} = {item} is outside {}; the default is {default}", spec.hard),
+        });
+    }
+    if problems.is_empty() { Ok(values) } else { Err(problems) }
+}
+
+/// What was found, short enough for one line.
+pub(super) fn describe(json: &Json) -> String {
+    const LONGEST: usize = 40;
+    let text = json.to_string();
+    if text.chars().count() <= LONGEST {
+        return text;
+    }
+    let head: String = text.chars().take(LONGEST).collect();
+    format!("{head}…")
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,57 @@
+//! Light: what sources emit, and the directions that light from afar is split into.
+//!
+//! Suns and point lights are exact; an environment is a radiance for each direction. A decomposition
+//! turns suns and environments into [`Ordinate`]s, parallel beams of a direction, an irradiance and a
+//! spread, and the constant part of an environment into `ambient`, which needs no beams.
+
+pub mod environment;
+
+use glam::DVec3;
+
+/// A source that is not an environment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Light {
+    /// Parallel light.
+    Sun {
+        /// Unit vector along which it travels.
+        direction: DVec3,
+        /// On a plane across it [W/m²], linear Rec. 709.
+        irradiance: [f64; 3],
+        /// Of the disk in the sky.
+        angular_diameter_deg: f64,
+    },
+    /// A point that shines evenly.
+    Point {
+        /// In the world [m].
+        position: DVec3,
+        /// [W/sr], linear Rec. 709.
+        intensity: [f64; 3],
+    },
+}
+
+/// A principal ordinate: parallel light that stands for a region of directions.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ordinate {
+    /// Unit vector along which it travels, in the world.
+    pub direction: DVec3,
+    /// On a plane across it [W/m²].
+    pub irradiance: [f64; 3],
+    /// Length of the region's mean direction, in (0, 1].
+    pub a0: f64,
+}
+
+/// What a decomposition gives.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Ordinates {
+    /// The beams.
+    pub ordinates: Vec<Ordinate>,
+    /// Radiance that comes from everywhere [W/(m² sr)].
+    pub ambient: [f64; 3],
+}
+
+/// The scale and the chromaticity of a color: its largest component, and the color over it.
+/// Black is no chromaticity.
+pub fn chromaticity(color: [f64; 3]) -> Option<(f64, [f64; 3])> {
+    let scale = color.into_iter().fold(0.0, f64::max);
+    (scale > 0.0).then(|| (scale, color.map(|c| c / scale)))
+}

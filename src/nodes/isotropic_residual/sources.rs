@@ -1,0 +1,60 @@
+//! The sources of the residual: what beams lose to scattering in each cell (DESIGN 6.3).
+
+use super::super::Run;
+use super::level::{LevelParams, Problem, REMEDY};
+use crate::gpu::{Bind, Buffer, Format, Texture};
+use crate::graph::NodeError;
+use crate::mirror;
+use crate::wire::{Beams, Channels, Medium};
+
+mirror! {
+    /// `SourceParams` of `sources.wgsl`.
+    pub(super) struct SourceParams {
+        level: LevelParams,
+        n_beams: u32,
+        packs_per_column: u32,
+        pad_0: u32,
+        pad_1: u32,
+    }
+}
+
+/// Q0 and Q1 [W/m³] on the finest grid.
+pub(super) struct Sources {
+    pub(super) field: Texture,
+    /// Powers of the columns of cells, per channel; their sum is the power of all sources.
+    pub(super) sums: Buffer,
+}
+
+pub(super) fn sources(
+    run: &Run,
+    medium: &Medium,
+    beams: &Beams,
+    channels: &Channels,
+    problem: &Problem,
+) -> Result<Sources, NodeError> {
+    let gpu = run.gpu;
+    let dims = medium.lattice.dims;
+    let level = problem.level(dims, medium.lattice.cell_m);
+    let layers = problem.layers(dims);
+    let field = gpu.texture3("sources", layers, Format::Rgba32Float, REMEDY)?;
+    let columns = [dims[0], dims[1], problem.n_channels];
+    let sums = gpu.buffer("powers of sources", 4 * columns.iter().product::<usize>() as u64, REMEDY)?;
+    let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
+    let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
+    let list = gpu.buffer_from("beams", &texels, "lower light_decomposition.count")?;
+    let params = SourceParams {
+        level,
+        n_beams: beams.beams.len() as u32,
+        packs_per_column: beams.tau.packs_per_column as u32,
+        pad_0: 0,
+        pad_1: 0,
+    };
+    let mut recorder = gpu.recorder("sources");
+    let inputs = [Bind::Texture(&medium.sigma_t), Bind::Texture(&beams.tau.texture), Bind::Buffer(&list)];
+    let stage = gpu.stage("isotropic_residual/sources", &[])?;
+    recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
+    let stage = gpu.stage("isotropic_residual/source_sum", &[])?;
+    recorder.dispatch(&stage.bind(gpu, &level, &[Bind::Texture(&field)], &[Bind::Buffer(&sums)]), columns);
+    run.finish(recorder)?;
+    Ok(Sources { field, sums })
+}

@@ -1,0 +1,104 @@
+//! The nodes: one folder each, with its specification, its run, its CPU reference and its tests.
+//!
+//! [`KINDS`] lists them, a line each, in the menu's order; nothing else needs to change for a new one.
+//! Nodes know the graph's node types, the GPU layer and the domain modules, never another node: what
+//! they share travels on wires (`crate::wire`).
+
+use std::cell::Cell;
+use std::path::PathBuf;
+
+use crate::gpu::{Gpu, GpuError, Recorder};
+use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Value};
+
+mod camera;
+mod environment;
+mod isotropic_residual;
+mod light_decomposition;
+mod load_vdb;
+mod medium;
+mod point_light;
+mod principal_propagation;
+mod raymarch;
+mod save_image;
+mod shape;
+mod spherical_propagation;
+mod sun;
+mod tone_map;
+mod transform;
+mod walk;
+
+/// Every kind of node.
+pub static KINDS: &[NodeKind] = &[
+    load_vdb::KIND,
+    shape::KIND,
+    medium::KIND,
+    sun::KIND,
+    point_light::KIND,
+    environment::KIND,
+    camera::KIND,
+    light_decomposition::KIND,
+    principal_propagation::KIND,
+    spherical_propagation::KIND,
+    isotropic_residual::KIND,
+    raymarch::KIND,
+    tone_map::KIND,
+    save_image::KIND,
+];
+
+/// A node as the session runs it.
+pub struct NodeKind {
+    /// What it is.
+    pub spec: &'static NodeSpec,
+    /// Files whose path, size and time its result depends on.
+    pub files: fn(&Params) -> Result<Vec<PathBuf>, NodeError>,
+    /// Makes its outputs, in the order of the specification.
+    pub run: fn(&Run) -> Result<Vec<Value>, NodeError>,
+}
+
+/// What a node has while it runs.
+pub struct Run<'a> {
+    /// Its parameters.
+    pub params: &'a Params,
+    /// Its inputs.
+    pub inputs: &'a Inputs,
+    /// The device.
+    pub gpu: &'a Gpu,
+    /// To be asked between stages.
+    pub cancel: &'a crate::graph::CancelToken,
+    /// GPU time so far [ms].
+    pub gpu_ms: Cell<f64>,
+}
+
+impl Run<'_> {
+    /// Runs what was recorded, and counts its time.
+    ///
+    /// # Errors
+    /// What the device reports; [`NodeError::Cancelled`].
+    pub fn finish(&self, recorder: Recorder) -> Result<(), NodeError> {
+        self.gpu_ms.set(self.gpu_ms.get() + recorder.finish()?);
+        self.cancel.check()
+    }
+}
+
+impl From<GpuError> for NodeError {
+    fn from(error: GpuError) -> Self {
+        Self::new(error)
+    }
+}
+
+/// The kind of this id.
+pub fn kind(id: &str) -> Option<&'static NodeKind> {
+    KINDS.iter().find(|kind| kind.spec.id == id)
+}
+
+/// The specifications, for checks and help.
+pub fn catalog() -> Catalog {
+    static SPECS: std::sync::LazyLock<Vec<&'static NodeSpec>> =
+        std::sync::LazyLock::new(|| KINDS.iter().map(|kind| kind.spec).collect());
+    Catalog(&SPECS)
+}
+
+/// For a node that reads no files.
+fn no_files(_: &Params) -> Result<Vec<PathBuf>, NodeError> {
+    Ok(Vec::new())
+}

@@ -1,0 +1,40 @@
+//! `principal_propagation`: parallel light through the medium (DESIGN 6.3).
+
+use super::{NodeKind, Run, no_files, walk};
+use crate::graph::{Category, NodeError, NodeSpec, PortSpec, PortType, Value};
+use crate::light::Ordinates;
+use crate::wire::{Beam, Beams, Medium, Place};
+
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+
+static SPEC: NodeSpec = NodeSpec {
+    id: "principal_propagation",
+    version: 1,
+    category: Category::Transport,
+    purpose: "Carries suns and principal ordinates through the medium.",
+    doc: "For every ordinate the optical depth that its light has come through, at the corners of the medium's cells. \
+          What scatters out of a beam is the residual's.",
+    inputs: &[
+        PortSpec::new("medium", PortType::Medium, "what the light travels through"),
+        PortSpec::new("ordinates", PortType::Ordinates, "the light"),
+    ],
+    outputs: &[PortSpec::new("beams", PortType::Beams, "the light in the medium")],
+    params: &[],
+};
+
+fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    let light: &Ordinates = run.inputs.one("ordinates");
+    let beams: Vec<Beam> = light
+        .ordinates
+        .iter()
+        .map(|ordinate| Beam {
+            place: Place::Parallel(medium.lattice.direction_in_index(ordinate.direction)),
+            power: ordinate.irradiance,
+            a0: ordinate.a0,
+        })
+        .collect();
+    let tau = walk::walk(run, medium, &beams)?;
+    let bytes = tau.texture.bytes();
+    Ok(vec![Value::new(PortType::Beams, bytes, Beams { beams, tau, ambient: light.ambient })])
+}

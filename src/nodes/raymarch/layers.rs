@@ -1,0 +1,27 @@
+//! From the shader's pixels to a picture with layers.
+
+use crate::image::{ALPHA, DEPTH, Image};
+use crate::mirror;
+
+mirror! {
+    /// `Pixel` of `shaders/raymarch.wgsl`.
+    pub(super) struct Pixel {
+        beauty: [f32; 4],
+        single: [f32; 4],
+        forward: [f32; 4],
+        residual: [f32; 4],
+    }
+}
+
+/// The picture of these pixels, row by row.
+pub(super) fn image(width: usize, height: usize, pixels: &[Pixel]) -> Image {
+    let three = |of: fn(&Pixel) -> &[f32; 4]| pixels.iter().flat_map(|p| of(p)[..3].to_vec()).collect();
+    let one = |of: fn(&Pixel) -> f32| pixels.iter().map(of).collect();
+    let mut image = Image::new(width, height, three(|p| &p.beauty));
+    image.insert(ALPHA, 1, one(|p| p.beauty[3]));
+    image.insert(DEPTH, 1, one(|p| p.single[3]));
+    image.insert("single", 3, three(|p| &p.single));
+    image.insert("forward", 3, three(|p| &p.forward));
+    image.insert("residual", 3, three(|p| &p.residual));
+    image
+}

@@ -1,0 +1,255 @@
+//! `raymarch`: the picture (DESIGN 6.5).
+//!
+//! Along each view ray: exact single scattering of the beams, what their forward peak adds (the table K),
+//! the residual lobe, and what stands behind the medium. Pixels are computed in bands of rows, so that a
+//! picture of any size fits and a cancel is heard.
+
+use glam::DMat3;
+
+use super::{NodeKind, Run, no_files};
+use crate::camera::Camera;
+use crate::gpu::{Bind, Format, Gpu, GpuError, Texture};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
+use crate::image::Image;
+use crate::light::environment::Environment;
+use crate::mirror;
+use crate::optics::delta::DeltaScaled;
+use crate::optics::peak;
+use crate::wire::{Beams, Channels, Medium, Residual, ShapeTexel};
+
+mod layers;
+
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+
+static SPEC: NodeSpec = NodeSpec {
+    id: "raymarch",
+    version: 1,
+    category: Category::Image,
+    purpose: "Marches the camera's rays through the medium: the picture.",
+    doc: "Layers: beauty, alpha (coverage), depth (mean distance of what is seen [m], 0 where nothing is), single (light scattered \
+          once), forward (light of the forward peak), residual (light scattered into all directions).",
+    inputs: &[
+        PortSpec::new("medium", PortType::Medium, "what is seen"),
+        PortSpec::new(
+            "beams",
+            PortType::Beams,
+            "light from propagations; without it only the residual is seen",
+        )
+        .many()
+        .optional(),
+        PortSpec::new("residual", PortType::Residual, "multiple scattering; without it there is none")
+            .optional(),
+        PortSpec::new("camera", PortType::Camera, "the view"),
+        PortSpec::new(
+            "environment",
+            PortType::Environment,
+            "what stands behind the medium; without it, black",
+        )
+        .optional(),
+    ],
+    outputs: &[PortSpec::new("image", PortType::Image, "radiance [W/(m2 sr)], linear Rec. 709, with layers")],
+    params: &[
+        ParamSpec::float("step", 0.5)
+            .unit("cells")
+            .between(0.01, 4.0)
+            .soft(0.1, 2.0)
+            .doc("Length of a step along the ray."),
+        ParamSpec::bool("background", true).doc("Whether the environment is seen behind the medium."),
+        ParamSpec::int("samples", 1)
+            .between(1.0, 256.0)
+            .soft(1.0, 16.0)
+            .doc("Rays a pixel, rounded up to a square number, on a grid in the pixel."),
+    ],
+};
+
+mirror! {
+    /// `MarchParams` of `shaders/raymarch.wgsl`.
+    pub(super) struct MarchParams {
+        shape: ShapeTexel,
+        eye: [f32; 3],
+        cell_m: f32,
+        forward: [f32; 3],
+        step: f32,
+        right: [f32; 3],
+        g: f32,
+        up: [f32; 3],
+        g_star: f32,
+        k: [f32; 4],
+        albedo: [f32; 4],
+        scatter: [f32; 4],
+        ambient: [f32; 4],
+        color: [f32; 4],
+        dims: [u32; 3],
+        n_beams: u32,
+        packs_per_column: u32,
+        width: u32,
+        height: u32,
+        row: u32,
+        n_rows: u32,
+        n_sub: u32,
+        backdrop: u32,
+        rotate_y: f32,
+        background: [f32; 4],
+        residual_color: [f32; 4],
+        world_from_index: [[f32; 4]; 3],
+        residual_channels: u32,
+        pad_0: u32,
+        pad_1: u32,
+        pad_2: u32,
+    }
+}
+
+/// Bytes of pixels that are computed at once; also how often a cancel is heard.
+const BAND_BYTES: usize = 32 << 20;
+
+fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let gpu = run.gpu;
+    let medium: &Medium = run.inputs.one("medium");
+    let camera: &Camera = run.inputs.one("camera");
+    let residual = run.inputs.maybe::<Residual>("residual");
+    let beams = Beams::merge(gpu, &medium.lattice, &run.inputs.many::<Beams>("beams"))?;
+    let backdrop = Backdrop::new(gpu, run.inputs.maybe("environment"), run.params.bool("background"))?;
+
+    let channels = common_channels(Channels::of(medium, &beams), residual);
+    let params = params(run, medium, camera, &beams, residual, &backdrop, channels)?;
+    let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
+    let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
+    let list = gpu.buffer_from("beams", &texels, "lower light_decomposition.count")?;
+    let dark = gpu.texture3("no residual", [1; 3], Format::Rgba32Float, "")?;
+    let moments = residual.map_or(&dark, |residual| &residual.moments);
+    let table = peak_texture(gpu, medium.g)?;
+    let (clamp, around) = (gpu.linear_sampler(), gpu.latlong_sampler());
+    let inputs = [
+        Bind::Texture(&medium.sigma_t),
+        Bind::Sampler(&clamp),
+        Bind::Texture(&beams.tau.texture),
+        Bind::Buffer(&list),
+        Bind::Texture(moments),
+        Bind::Texture(&table),
+        Bind::Texture(&backdrop.map),
+        Bind::Sampler(&around),
+    ];
+
+    let stage = gpu.stage("raymarch", &[("channels", channels.count.to_string())])?;
+    let row_bytes = size_of::<layers::Pixel>() * camera.width;
+    let band = (BAND_BYTES / row_bytes).clamp(1, camera.height);
+    let pixels = gpu.buffer("a band of pixels", (row_bytes * band) as u64, "lower camera.width")?;
+    let mut all = Vec::with_capacity(camera.width * camera.height);
+    for row in (0..camera.height).step_by(band) {
+        let n_rows = band.min(camera.height - row);
+        let params = MarchParams { row: row as u32, n_rows: n_rows as u32, ..params };
+        let mut recorder = gpu.recorder("raymarch");
+        let bound = stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&pixels)]);
+        recorder.dispatch(&bound, [camera.width, n_rows, 1]);
+        run.finish(recorder)?;
+        let read: Vec<layers::Pixel> = gpu.read_buffer(&pixels)?;
+        all.extend_from_slice(&read[..camera.width * n_rows]);
+    }
+    let image = layers::image(camera.width, camera.height, &all);
+    let bytes = image.layers.values().map(|layer| size_of_val(layer.data.as_slice()) as u64).sum();
+    Ok(vec![Value::new::<Image>(PortType::Image, bytes, image)])
+}
+
+/// One channel only where the residual has one of the same color.
+fn common_channels(of_beams: Channels, residual: Option<&Residual>) -> Channels {
+    match residual {
+        Some(residual) if residual.channels != of_beams => Channels::RGB,
+        _ => of_beams,
+    }
+}
+
+fn params(
+    run: &Run,
+    medium: &Medium,
+    camera: &Camera,
+    beams: &Beams,
+    residual: Option<&Residual>,
+    backdrop: &Backdrop,
+    channels: Channels,
+) -> Result<MarchParams, NodeError> {
+    let lattice = &medium.lattice;
+    let index_from_world = lattice.index_from_world();
+    // Directions keep their lengths: the map's scale is a cell's edge.
+    let turned =
+        |v: glam::DVec3| (index_from_world.transform_vector3(v) * lattice.cell_m).as_vec3().to_array();
+    let [forward, right, up] = camera.frame().map_err(NodeError::new)?;
+    let scaled = medium.albedo.map(|albedo| DeltaScaled::new(albedo, medium.g));
+    let four = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
+    let residual_color = residual.map_or([0.0; 3], |residual| match channels.count {
+        1 => [1.0; 3],
+        _ => residual.channels.color,
+    });
+    let rotation = DMat3::from_mat4(lattice.world_from_index) * (1.0 / lattice.cell_m);
+    Ok(MarchParams {
+        shape: medium.shape(),
+        eye: index_from_world.transform_point3(camera.position).as_vec3().to_array(),
+        cell_m: lattice.cell_m as f32,
+        forward: turned(forward),
+        step: run.params.f64("step") as f32,
+        right: turned(right),
+        g: medium.g as f32,
+        up: turned(up),
+        g_star: scaled[0].g_star as f32,
+        k: four(scaled.map(|s| s.k)),
+        albedo: four(medium.albedo),
+        scatter: four(scaled.map(|s| s.sigma_s_ratio)),
+        ambient: four(channels.project(beams.ambient)),
+        color: four(channels.color),
+        dims: lattice.dims.map(|n| n as u32),
+        n_beams: beams.beams.len() as u32,
+        packs_per_column: beams.tau.packs_per_column as u32,
+        width: camera.width as u32,
+        height: camera.height as u32,
+        row: 0,
+        n_rows: 0,
+        n_sub: (run.params.i64("samples") as f64).sqrt().ceil() as u32,
+        backdrop: backdrop.kind,
+        rotate_y: backdrop.rotate_y as f32,
+        background: four(backdrop.radiance),
+        residual_color: four(residual_color),
+        world_from_index: [rotation.x_axis, rotation.y_axis, rotation.z_axis]
+            .map(|axis| axis.as_vec3().extend(0.0).to_array()),
+        residual_channels: residual.map_or(0, |residual| residual.channels.count as u32),
+        pad_0: 0,
+        pad_1: 0,
+        pad_2: 0,
+    })
+}
+
+/// The table of K for this g.
+fn peak_texture(gpu: &Gpu, g: f64) -> Result<Texture, GpuError> {
+    let dims = [peak::COLUMNS, peak::ROWS, 1];
+    if g <= 0.0 {
+        return gpu.texture3("no forward peak", [1; 3], Format::R32Float, "");
+    }
+    gpu.texture3_from("forward peak", dims, Format::R32Float, &peak::peak_table(g), "")
+}
+
+/// What stands behind the medium.
+struct Backdrop {
+    /// 0 nothing, 1 constant, 2 a map.
+    kind: u32,
+    radiance: [f64; 3],
+    rotate_y: f64,
+    map: Texture,
+}
+
+impl Backdrop {
+    fn new(gpu: &Gpu, environment: Option<&Environment>, seen: bool) -> Result<Self, GpuError> {
+        let none = |kind, radiance| {
+            let map = gpu.texture2_from("no map", [1, 1], Format::Rgba32Float, &[[0.0_f32; 4]], "")?;
+            Ok(Self { kind, radiance, rotate_y: 0.0, map })
+        };
+        match environment.filter(|_| seen) {
+            None => none(0, [0.0; 3]),
+            Some(Environment::Constant(radiance)) => none(1, *radiance),
+            Some(Environment::Map(map)) => {
+                let texels: Vec<[f32; 4]> = map.texels.iter().map(|t| [t[0], t[1], t[2], 0.0]).collect();
+                let size = [map.width, map.height];
+                let remedy = "use a smaller picture as environment";
+                let texture = gpu.texture2_from("environment", size, Format::Rgba32Float, &texels, remedy)?;
+                Ok(Self { kind: 2, radiance: [map.scale; 3], rotate_y: map.rotate_y, map: texture })
+            }
+        }
+    }
+}

@@ -1,0 +1,44 @@
+//! `save_image`: writes a picture to a file.
+
+use std::path::PathBuf;
+
+use super::{NodeKind, Run};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, Params, PortSpec, PortType, Value};
+use crate::image::{self, Image};
+
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run };
+
+static SPEC: NodeSpec = NodeSpec {
+    id: "save_image",
+    version: 1,
+    category: Category::Image,
+    purpose: "Writes a picture: .exr with all layers, or .png.",
+    doc: "The file appears whole or not at all; its folder is made where it is missing. EXR holds 32-bit floats: R G B of the beauty, \
+          A the coverage, Z the depth in meters, other layers as layer.R. PNG is sRGB with 8 bits; without a tone_map node before it, \
+          at exposure 0 and clipped at 1.",
+    inputs: &[PortSpec::new("image", PortType::Image, "the picture")],
+    outputs: &[PortSpec::new("image", PortType::Image, "the same picture")],
+    params: &[ParamSpec::out_path("path", "out/picture.exr")
+        .doc("Where to write, .exr or .png; relative to the graph file.")],
+};
+
+/// What is there already: when somebody removed or changed the file, it is written again.
+fn files(params: &Params) -> Result<Vec<PathBuf>, NodeError> {
+    Ok(vec![params.path("path").to_owned()])
+}
+
+fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let picture: &Image = run.inputs.one("image");
+    let path = run.params.path("path");
+    match path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase).as_deref() {
+        Some("exr") => image::exr::write(path, picture).map_err(NodeError::new)?,
+        Some("png") => image::png::write(path, picture).map_err(NodeError::new)?,
+        _ => {
+            return Err(NodeError::new(format!(
+                "{}: pictures are written as .exr or .png: change the ending",
+                path.display()
+            )));
+        }
+    }
+    Ok(run.inputs.values("image").to_vec())
+}

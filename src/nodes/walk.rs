@@ -1,0 +1,63 @@
+//! The walk to the light, shared by the propagations: tau from every corner of a cell to every light.
+//!
+//! Midpoint samples of the trilinear extinction, at most a cell apart, from the corner to the edge of
+//! the medium or to the light (DESIGN 6.3); a homogeneous shape in closed form. Exact but for the
+//! samples; its cost is corners × beams × the way through the medium.
+
+use super::Run;
+use crate::gpu::{Bind, Recorder, Sampler};
+use crate::graph::NodeError;
+use crate::mirror;
+use crate::wire::{Beam, BeamTexel, Medium, ShapeTexel, TauAtlas};
+
+mirror! {
+    /// `WalkParams` of `shaders/walk.wgsl`.
+    pub(super) struct WalkParams {
+        shape: ShapeTexel,
+        origin: [u32; 3],
+        n_beams: u32,
+        corners: [u32; 3],
+        cell_m: f32,
+        beams: [BeamTexel; 4],
+    }
+}
+
+/// Fills an atlas for these beams.
+///
+/// # Errors
+/// What the device reports.
+pub(super) fn walk(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtlas, NodeError> {
+    let atlas = TauAtlas::new(run.gpu, &medium.lattice, beams.len())?;
+    let sampler = run.gpu.linear_sampler();
+    for (pack, four) in beams.chunks(4).enumerate() {
+        // A submission each, so that a cancel is heard between packs.
+        let mut recorder = run.gpu.recorder("walk to the light");
+        record(&mut recorder, run, medium, &sampler, &atlas, pack, four)?;
+        run.finish(recorder)?;
+    }
+    Ok(atlas)
+}
+
+fn record(
+    recorder: &mut Recorder,
+    run: &Run,
+    medium: &Medium,
+    sampler: &Sampler,
+    atlas: &TauAtlas,
+    pack: usize,
+    beams: &[Beam],
+) -> Result<(), NodeError> {
+    let params = WalkParams {
+        shape: medium.shape(),
+        origin: atlas.origin(pack),
+        n_beams: beams.len() as u32,
+        corners: atlas.corners.map(|n| n as u32),
+        cell_m: medium.lattice.cell_m as f32,
+        beams: std::array::from_fn(|n| beams[n.min(beams.len() - 1)].texel([0.0; 3])),
+    };
+    let stage = run.gpu.stage("walk", &[])?;
+    let inputs = [Bind::Texture(&medium.sigma_t), Bind::Sampler(sampler)];
+    let bound = stage.bind(run.gpu, &params, &inputs, &[Bind::Texture(&atlas.texture)]);
+    recorder.dispatch(&bound, atlas.corners);
+    Ok(())
+}

@@ -1,0 +1,148 @@
+//! The engine that editor and command line share: the device, the cache, and the running of graphs.
+//!
+//! A [`Session`] holds what is expensive: the open device with its compiled stages, and the results of
+//! nodes by the hash of everything that they depend on. A graph goes in, events and values come out.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::time::{Instant, UNIX_EPOCH};
+
+use crate::gpu::{AdapterChoice, Gpu, GpuError, shader_names, shader_text};
+use crate::graph::{
+    Cache, CancelToken, Document, Evaluation, Event, Host, Inputs, NodeError, NodeJob, Outputs, Plan, Target,
+    evaluate,
+};
+use crate::nodes::{self, Run};
+
+/// The cache keeps results up to so many bytes, on CPU and GPU together, unless told otherwise.
+pub const CACHE_BYTES: u64 = 2 << 30;
+
+/// An open engine.
+pub struct Session {
+    gpu: Gpu,
+    cache: Cache,
+}
+
+/// What came of a graph.
+pub struct Solved {
+    /// Values and failures by node.
+    pub evaluation: Evaluation,
+    /// Costs of each node that ran or was cached, in order.
+    pub costs: Vec<NodeCost>,
+    /// Wall clock of all [ms].
+    pub wall_ms: f64,
+    /// The most bytes held on the device at once.
+    pub peak_gpu_bytes: u64,
+}
+
+/// What a node cost.
+#[derive(Debug, Clone, PartialEq, serde::Serialize)]
+pub struct NodeCost {
+    /// The node.
+    pub name: String,
+    /// Its kind.
+    #[serde(rename = "type")]
+    pub kind: &'static str,
+    /// Wall clock [ms].
+    pub cpu_ms: f64,
+    /// Of its stages [ms].
+    pub gpu_ms: f64,
+    /// Of its outputs.
+    pub bytes: u64,
+    /// Whether its result was there already.
+    pub cached: bool,
+}
+
+impl Session {
+    /// Opens a device.
+    ///
+    /// # Errors
+    /// [`GpuError::Adapter`] says what is missing.
+    pub fn open(adapter: &AdapterChoice) -> Result<Self, GpuError> {
+        Ok(Self { gpu: Gpu::open(adapter)?, cache: Cache::new(CACHE_BYTES) })
+    }
+
+    /// The device.
+    pub fn gpu(&self) -> &Gpu {
+        &self.gpu
+    }
+
+    /// Runs what `target` needs; results that are still valid are taken from the cache. The document
+    /// should have been checked: a node with a problem fails, and what does not depend on it goes on.
+    pub fn solve(
+        &mut self,
+        document: &Document,
+        target: Target,
+        cancel: &CancelToken,
+        on_event: &mut dyn FnMut(&Event),
+    ) -> Solved {
+        let start = Instant::now();
+        self.gpu.take_peak_bytes();
+        let plan = Plan::new(document, nodes::catalog(), target);
+        let host = NodeHost { gpu: &self.gpu, shaders: shader_hash(), gpu_ms: RefCell::default() };
+        let mut costs = Vec::new();
+        let evaluation = evaluate(&plan, &host, &mut self.cache, cancel, &mut |event| {
+            if let Event::Finished { name, cached, cpu_ms, bytes } = &event {
+                let kind = document.nodes.get(name).and_then(|node| nodes::kind(&node.type_id));
+                costs.push(NodeCost {
+                    name: name.clone(),
+                    kind: kind.map_or("", |kind| kind.spec.id),
+                    cpu_ms: *cpu_ms,
+                    gpu_ms: host.gpu_ms.borrow().get(name).copied().filter(|_| !cached).unwrap_or(0.0),
+                    bytes: *bytes,
+                    cached: *cached,
+                });
+            }
+            on_event(&event);
+        });
+        Solved {
+            evaluation,
+            costs,
+            wall_ms: start.elapsed().as_secs_f64() * 1e3,
+            peak_gpu_bytes: self.gpu.take_peak_bytes(),
+        }
+    }
+}
+
+/// Runs nodes for the graph.
+struct NodeHost<'a> {
+    gpu: &'a Gpu,
+    shaders: [u8; 32],
+    gpu_ms: RefCell<HashMap<String, f64>>,
+}
+
+impl Host for NodeHost<'_> {
+    fn identity(&self, job: &NodeJob) -> Result<Vec<u8>, NodeError> {
+        let kind = nodes::kind(job.spec.id).expect("the plan holds kinds of the catalog");
+        let mut identity = self.shaders.to_vec();
+        for path in (kind.files)(job.params)? {
+            identity.extend_from_slice(path.as_os_str().as_encoded_bytes());
+            // A file that is not there is the node's to report.
+            if let Ok(found) = std::fs::metadata(&path) {
+                let modified = found.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
+                identity.extend_from_slice(&found.len().to_le_bytes());
+                identity.extend_from_slice(&modified.map_or(0, |time| time.as_nanos()).to_le_bytes());
+            }
+        }
+        Ok(identity)
+    }
+
+    fn run(&self, job: &NodeJob, inputs: &Inputs) -> Result<Outputs, NodeError> {
+        let kind = nodes::kind(job.spec.id).expect("the plan holds kinds of the catalog");
+        let run =
+            Run { params: job.params, inputs, gpu: self.gpu, cancel: job.cancel, gpu_ms: Default::default() };
+        let values = (kind.run)(&run)?;
+        self.gpu_ms.borrow_mut().insert(job.name.to_owned(), run.gpu_ms.get());
+        Ok(Outputs::new(values))
+    }
+}
+
+/// Of all shader files: an edited shader (debug builds read them from disk) makes every result stale.
+fn shader_hash() -> [u8; 32] {
+    let mut hasher = blake3::Hasher::new();
+    for name in shader_names() {
+        hasher.update(name.as_bytes());
+        hasher.update(shader_text(&name).unwrap_or_default().as_bytes());
+    }
+    *hasher.finalize().as_bytes()
+}

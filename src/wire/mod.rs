@@ -1,0 +1,16 @@
+//! What travels on wires with fields on the GPU: media, beams, residuals.
+//!
+//! Nodes never know each other; these types are what they agree on. Light, ordinates, cameras and
+//! pictures are plain values of their own modules. All fields are in the index space of the medium's
+//! [`Lattice`](crate::volume::Lattice), where a cell's center sits at its integer index; its corner
+//! (i, j, k) sits at (i - 1/2, j - 1/2, k - 1/2).
+
+mod beams;
+mod channels;
+mod medium;
+mod residual;
+
+pub use beams::{Beam, BeamTexel, Beams, Place, TauAtlas};
+pub use channels::Channels;
+pub use medium::{Homogeneous, Medium, ShapeTexel};
+pub use residual::Residual;
