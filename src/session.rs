@@ -67,6 +67,11 @@ impl Session {
         &self.gpu
     }
 
+    /// Forgets all results; compiled stages stay.
+    pub fn forget(&mut self) {
+        self.cache.clear();
+    }
+
     /// Runs what `target` needs; results that are still valid are taken from the cache. The document
     /// should have been checked: a node with a problem fails, and what does not depend on it goes on.
     pub fn solve(

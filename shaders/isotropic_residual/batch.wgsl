@@ -16,7 +16,24 @@ struct Batch {
     // First (channel, direction) pair of this batch and their number.
     first: u32,
     n_pairs: u32,
-    pad_0: u32,
-    pad_1: u32,
+    // Channel of the first lobe that is bound.
+    first_channel: u32,
+    pad: u32,
     directions: array<Direction, 50>,
+}
+
+@group(0) @binding(0) var<uniform> batch: Batch;
+
+// Whether a thread (x, y, layer) has a cell in this batch's channels.
+fn has_cell(id: vec3u) -> bool {
+    let c = id.z / batch.level.dims.z;
+    let first = batch.first / batch.level.n_directions;
+    let last = (batch.first + batch.n_pairs - 1u) / batch.level.n_directions;
+    return all(id.xy < batch.level.dims.xy) && c >= first && c <= last;
+}
+
+// Where the lobe of a thread's cell stands among those that are bound.
+fn lobe_index(id: vec3u) -> u32 {
+    let dims = batch.level.dims;
+    return id.x + dims.x * (id.y + dims.y * (id.z - batch.first_channel * dims.z));
 }

@@ -5,8 +5,7 @@
 #import "isotropic_residual/batch.wgsl"
 #import "lib/lobe.wgsl"
 
-@group(0) @binding(0) var<uniform> batch: Batch;
-@group(1) @binding(0) var lobes: texture_3d<u32>;
+@group(1) @binding(0) var<storage, read> lobes: array<vec4u>;
 @group(2) @binding(0) var<storage, read_write> mean_radiance: array<f32>;
 @group(2) @binding(1) var<storage, read_write> line_sums: array<vec2f>;
 
@@ -18,75 +17,80 @@ fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
     let direction = batch.directions[pair % level.n_directions];
     let e = direction.e;
     let n = vec3i(level.dims);
-    let cells = abs(e);
 
     // Lines march along the axis of the longest component, z before y before x: lanes then stand along x.
     var along = vec3i(0, 0, 1);
-    if cells.z < max(cells.x, cells.y) {
-        along = select(vec3i(1, 0, 0), vec3i(0, 1, 0), cells.y >= cells.x);
+    if abs(e.z) < max(abs(e.x), abs(e.y)) {
+        along = select(vec3i(1, 0, 0), vec3i(0, 1, 0), abs(e.y) >= abs(e.x));
     }
-    let hop = dot(cells, along);
     let u_axis = select(vec3i(1, 0, 0), vec3i(0, 1, 0), along.x == 1);
     let v_axis = vec3i(1) - along - u_axis;
-    // A direction that hops h cells at a time has h interleaved sets of lines, stacked along the second axis.
     let n_u = dot(n, u_axis);
     let n_v = dot(n, v_axis);
-    let u = i32(id.x);
-    let v = i32(id.y) % n_v;
-    let phase = i32(id.y) / n_v;
     let n_along = dot(n, along);
+    // A direction that hops h cells at a time has h interleaved sets of lines, stacked along the second axis.
+    let hop = abs(dot(e, along));
+    var u = i32(id.x);
+    var v = i32(id.y) % n_v;
+    let phase = i32(id.y) / n_v;
     if u >= n_u || phase >= min(hop, n_along) || id.z >= batch.n_pairs {
         return;
     }
-    let forward = dot(e, along) > 0;
-    var p = u * u_axis + v * v_axis + select(n_along - 1 - phase, phase, forward) * along;
     let n_steps = (n_along - phase + hop - 1) / hop;
 
+    // u and v count along the direction, so that a line only ever wraps at their ends; strides carry the sense.
+    let steps = vec3i(dot(e, u_axis), dot(e, v_axis), dot(e, along));
+    let strides = vec3i(1, n.x, n.x * n.y);
+    let unsigned = vec3i(dot(strides, u_axis), dot(strides, v_axis), dot(strides, along));
+    let signed = select(unsigned, -unsigned, steps < vec3i(0));
+    let last = select(vec3i(0), vec3i(n_u, n_v, n_along) - 1, steps < vec3i(0)) * unsigned;
+    var cell = last.x + last.y + last.z + u * signed.x + v * signed.y + phase * signed.z;
+    let stride = abs(steps.x) * signed.x + abs(steps.y) * signed.y + hop * signed.z;
+    let back_u = n_u * signed.x;
+    let back_v = n_v * signed.y;
+
+    let n_cells = n.x * n.y * n.z;
+    let lobe_base = i32(c - batch.first_channel) * n_cells;
+    let mean_base = i32(id.z) * n_cells;
     let inflow = level.channels[c].inflow;
-    let absorb = level.channels[c].absorb;
     let s = direction.stride * level.cell_m;
     let a = 2.0 / s;
-    let layer = i32(c * level.dims.z);
-    let base = id.z * level.dims.x * level.dims.y * level.dims.z;
 
+    // No branches below: software drivers pay for each by a round trip of every variable through memory.
     var radiance = inflow;
     var leak = 0.0;
     var absorbed = 0.0;
     for (var step = 0; step < n_steps; step += 1) {
-        let texel = textureLoad(lobes, p + vec3i(0, 0, layer), 0);
+        let texel = lobes[lobe_base + cell];
         let t = bitcast<f32>(texel.w);
         let shape = 1.0 + dot(unpack_slope(texel), direction.omega);
         let q = bitcast<f32>(texel.x) * shape * shape;
-        var mean = radiance;
-        var out = radiance;
-        if t > 0.0 {
-            let diamond = (q + a * radiance) / (t + a);
-            out = 2.0 * diamond - radiance;
-            mean = diamond;
-            if out < 0.0 {
-                mean = (q + 0.5 * a * radiance) / t;
-                out = 0.0;
-            }
-            absorbed += t * mean;
-        } else {
-            mean += 0.5 * q * s;
-            out += q * s;
-        }
-        mean_radiance[base + u32(p.x + n.x * (p.y + n.y * p.z))] = mean;
-        radiance = out;
-        let next = p + e;
-        p = next;
-        p = select(p, p + n, next < vec3i(0));
-        p = select(p, p - n, next >= n);
-        let side = any((p != next) & (along == vec3i(0)));
-        if side {
-            leak += radiance;
-            radiance = inflow;
-        }
+        let diamond = (q + a * radiance) / (t + a);
+        let ahead = 2.0 * diamond - radiance;
+        // Where the diamond runs dry the cell is so thick that nothing leaves it (t > 0 then).
+        let dry = (q + 0.5 * a * radiance) / max(t, 1e-30);
+        let is_void = t <= 0.0;
+        let mean = select(select(diamond, dry, ahead < 0.0), radiance + 0.5 * q * s, is_void);
+        let out = select(max(ahead, 0.0), radiance + q * s, is_void);
+        absorbed += t * mean;
+        mean_radiance[mean_base + cell] = mean;
+
+        u += abs(steps.x);
+        v += abs(steps.y);
+        let wraps_u = u >= n_u;
+        let wraps_v = v >= n_v;
+        u -= select(0, n_u, wraps_u);
+        v -= select(0, n_v, wraps_v);
+        cell += stride - select(0, back_u, wraps_u) - select(0, back_v, wraps_v);
+        let side = wraps_u || wraps_v;
+        leak += select(0.0, out, side);
+        radiance = select(out, inflow, side);
     }
-    leak += radiance;
+    // The last step may have wrapped: then its line has leaked, and the one that entered has no cell.
+    leak += select(radiance, 0.0, u < abs(steps.x) && steps.x != 0 || v < abs(steps.y) && steps.y != 0);
+
     // Powers of this line: of its end and its wraps through the tube h^3 / s, and of what it loses inside.
     let cell_volume = level.cell_m * level.cell_m * level.cell_m;
-    let power = direction.weight * cell_volume;
-    line_sums[pair * level.n_threads + id.y * u32(n_u) + id.x] = vec2f(leak / s, absorbed * absorb) * power;
+    let absorbed_power = absorbed * level.channels[c].absorb;
+    line_sums[pair * level.n_threads + id.y * u32(n_u) + id.x] = direction.weight * cell_volume * vec2f(leak / s, absorbed_power);
 }

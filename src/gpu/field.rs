@@ -54,20 +54,20 @@ pub struct Texture {
     pub(super) view: wgpu::TextureView,
     dims: [u32; 3],
     format: Format,
-    counted: Counted,
+    pub(super) counted: Arc<Counted>,
 }
 
 /// A storage buffer; zero when new.
 pub struct Buffer {
     pub(super) buffer: wgpu::Buffer,
-    counted: Counted,
+    pub(super) counted: Arc<Counted>,
 }
 
 /// A texture sampler.
 pub struct Sampler(pub(super) wgpu::Sampler);
 
-/// Takes the bytes off the account when the field goes.
-struct Counted {
+/// Takes the bytes off the account when the field, and all that is bound to it, is gone.
+pub(super) struct Counted {
     bytes: u64,
     memory: Arc<Memory>,
 }
@@ -256,9 +256,9 @@ impl Gpu {
         Ok(buffer)
     }
 
-    fn count(&self, bytes: u64) -> Counted {
+    fn count(&self, bytes: u64) -> Arc<Counted> {
         self.memory.add(bytes);
-        Counted { bytes, memory: Arc::clone(&self.memory) }
+        Arc::new(Counted { bytes, memory: Arc::clone(&self.memory) })
     }
 
     pub(super) fn out_of_memory(&self) -> GpuError {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use wgpu::util::DeviceExt;
 
+use super::field::Counted;
 use super::{Buffer, Gpu, GpuError, Sampler, Shader, Texture};
 
 /// A compiled compute pipeline with its three bind group layouts.
@@ -21,6 +22,7 @@ pub struct Stage {
 }
 
 /// One resource in a list of inputs or outputs.
+#[derive(Clone, Copy)]
 pub enum Bind<'a> {
     /// A texture, sampled, loaded or written as the shader says.
     Texture(&'a Texture),
@@ -33,6 +35,14 @@ pub enum Bind<'a> {
 }
 
 impl<'a> Bind<'a> {
+    fn counted(&self) -> Option<Arc<Counted>> {
+        match self {
+            Bind::Texture(texture) => Some(Arc::clone(&texture.counted)),
+            Bind::Buffer(buffer) | Bind::Window(buffer, ..) => Some(Arc::clone(&buffer.counted)),
+            Bind::Sampler(_) => None,
+        }
+    }
+
     fn resource(&self) -> wgpu::BindingResource<'a> {
         match *self {
             Bind::Texture(texture) => wgpu::BindingResource::TextureView(&texture.view),
@@ -52,6 +62,8 @@ pub struct Bound {
     pub(super) label: String,
     pub(super) pipeline: Arc<Pipeline>,
     pub(super) groups: [wgpu::BindGroup; 3],
+    /// The bind groups keep their fields alive, so these stay on the account.
+    _held: Vec<Arc<Counted>>,
 }
 
 impl Gpu {
@@ -125,6 +137,7 @@ impl Stage {
             label: self.label.clone(),
             pipeline: Arc::clone(&self.pipeline),
             groups: [params, list(1, inputs), list(2, outputs)],
+            _held: inputs.iter().chain(outputs).filter_map(Bind::counted).collect(),
         }
     }
 }

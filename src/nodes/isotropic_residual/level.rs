@@ -1,8 +1,6 @@
 //! One grid of the cascade: its shader parameters, fields and bound stages.
 
-use std::sync::Arc;
-
-use crate::gpu::{Bind, Bound, Buffer, Format, Gpu, GpuError, Recorder, Texture};
+use crate::gpu::{Bind, Bound, Buffer, Format, Gpu, GpuError, Recorder, Stage, Texture};
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::directions::{LineDirection, LineSet};
@@ -49,8 +47,8 @@ mirror! {
         level: LevelParams,
         first: u32,
         n_pairs: u32,
-        pad_0: u32,
-        pad_1: u32,
+        first_channel: u32,
+        pad: u32,
         directions: [DirectionTexel; 50],
     }
 }
@@ -155,58 +153,92 @@ fn entering(problem: &Problem, dims: [usize; 3], cell_m: f64) -> f64 {
         .sum()
 }
 
+/// Which (channel, direction) pairs are swept by one dispatch, and among whose lobes.
+struct Batch {
+    first: usize,
+    n_pairs: usize,
+    group: usize,
+}
+
+/// What levels share: the mean radiances of a batch, and the division into batches.
+pub(super) struct Scratch {
+    mean_radiance: Buffer,
+    /// Takes turns with a level's moments where a channel needs several batches.
+    partial: Texture,
+    batches: Vec<Batch>,
+    /// Channels whose lobes stand in one buffer: all of them, or one.
+    channels_per_group: usize,
+}
+
+/// The largest scratch; beyond this a larger one saves nothing.
+const BATCH_BYTES: u64 = 1 << 30;
+/// Bytes of a packed lobe.
+const LOBE_BYTES: u64 = 16;
+
+impl Scratch {
+    /// For the finest level; `limit_bytes` is the largest binding.
+    pub(super) fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        dims: [usize; 3],
+        limit_bytes: u64,
+    ) -> Result<Self, GpuError> {
+        let n_cells = dims.iter().product::<usize>() as u64;
+        let n_directions = problem.directions.len();
+        let n_pairs = problem.n_channels * n_directions;
+        let room = (limit_bytes.min(BATCH_BYTES) / (4 * n_cells)) as usize;
+        // All channels at once, or one after the other in as few batches as fit.
+        let at_once = room >= n_pairs && LOBE_BYTES * n_cells * problem.n_channels as u64 <= limit_bytes;
+        let (batch, channels_per_group) = if at_once {
+            (n_pairs, problem.n_channels)
+        } else {
+            (n_directions.div_ceil(n_directions.div_ceil(room.max(1))), 1)
+        };
+        let group_pairs = channels_per_group * n_directions;
+        let batches: Vec<Batch> = (0..n_pairs / group_pairs)
+            .flat_map(|group| {
+                (0..group_pairs).step_by(batch).map(move |first| Batch {
+                    first: group * group_pairs + first,
+                    n_pairs: batch.min(group_pairs - first),
+                    group,
+                })
+            })
+            .collect();
+        let whole = batch == group_pairs;
+        let partial = if whole { [1; 3] } else { problem.layers(dims) };
+        Ok(Self {
+            mean_radiance: gpu.buffer("radiances of a sweep", 4 * n_cells * batch as u64, REMEDY)?,
+            partial: gpu.texture3("moments of a sweep", partial, Format::Rgba32Float, REMEDY)?,
+            batches,
+            channels_per_group,
+        })
+    }
+}
+
 /// A grid of the cascade with everything bound.
 pub(super) struct Level {
     pub(super) dims: [usize; 3],
     pub(super) params: LevelParams,
-    pub(super) sigma_t: Arc<Texture>,
-    pub(super) sources: Arc<Texture>,
-    /// What a sweep leaves, before its factor.
+    /// phi and F after the last sweep.
     pub(super) moments: Texture,
     /// Factors of three channels; power in of three; power out and absorbed of three.
     pub(super) balance: Buffer,
     layers: [usize; 3],
-    lobe: Bound,
-    batches: Vec<(Bound, Bound, [usize; 3])>,
+    n_channels: usize,
+    steps: Vec<Step>,
     rebalance: Bound,
     keep: Bound,
-    n_channels: usize,
 }
 
-/// Scratch that levels share: the mean radiances of a batch of directions.
-pub(super) struct Scratch {
-    mean_radiance: Buffer,
-    pairs_per_batch: usize,
-    /// Takes turns with a level's moments where a sweep needs several batches.
-    partial: Texture,
-}
-
-/// The largest batch; beyond this a larger one saves nothing.
-const BATCH_BYTES: u64 = 1 << 30;
-
-impl Scratch {
-    /// For the finest level.
-    pub(super) fn new(gpu: &Gpu, problem: &Problem, dims: [usize; 3]) -> Result<Self, GpuError> {
-        let cells_bytes = 4 * dims.iter().product::<usize>() as u64;
-        let n_pairs = problem.n_channels * problem.directions.len();
-        let room = (gpu.max_binding_bytes().min(BATCH_BYTES) / cells_bytes) as usize;
-        let pairs_per_batch = room.clamp(1, n_pairs);
-        let one_batch = pairs_per_batch >= n_pairs;
-        Ok(Self {
-            mean_radiance: gpu.buffer(
-                "radiances of a sweep",
-                cells_bytes * pairs_per_batch as u64,
-                REMEDY,
-            )?,
-            pairs_per_batch,
-            partial: gpu.texture3(
-                "moments of a sweep",
-                if one_batch { [1; 3] } else { problem.layers(dims) },
-                Format::Rgba32Float,
-                REMEDY,
-            )?,
-        })
-    }
+/// The stages of one batch.
+struct Step {
+    start: Option<Bound>,
+    sweep: Bound,
+    threads: [usize; 3],
+    /// Into lobes, and into moments; partial sums for all but the last batch of a channel.
+    gather: [Bound; 2],
+    /// The last batch of its channels.
+    completes: bool,
 }
 
 impl Level {
@@ -215,64 +247,83 @@ impl Level {
         problem: &Problem,
         scratch: &Scratch,
         cell_m: f64,
-        [sigma_t, sources]: [Arc<Texture>; 2],
+        [sigma_t, sources]: [&Texture; 2],
         source_sums: &Buffer,
     ) -> Result<Self, GpuError> {
         let dims = sigma_t.dims().map(|n| n as usize);
+        let n_cells = dims.iter().product::<usize>() as u64;
         let params = problem.level(dims, cell_m);
         let layers = problem.layers(dims);
+        let n_directions = problem.directions.len();
+        let n_sums = params.n_threads as usize * n_directions;
         let moments = gpu.texture3("moments", layers, Format::Rgba32Float, REMEDY)?;
-        let lobes = gpu.texture3("lobes", layers, Format::Rgba32Uint, REMEDY)?;
         let balance = gpu.buffer_from("balance", &[1.0_f32; 12], REMEDY)?;
-        let n_pairs = problem.n_channels * problem.directions.len();
-        let n_sums = params.n_threads as usize * problem.directions.len();
         let line_sums = gpu.buffer("powers of lines", 8 * (n_sums * problem.n_channels) as u64, REMEDY)?;
+        let lobe_bytes = LOBE_BYTES * n_cells * scratch.channels_per_group as u64;
+        let lobes = (0..problem.n_channels / scratch.channels_per_group)
+            .map(|_| gpu.buffer("lobes", lobe_bytes, REMEDY))
+            .collect::<Result<Vec<Buffer>, GpuError>>()?;
 
-        let lobe = gpu.stage("isotropic_residual/lobe", &[])?.bind(
-            gpu,
-            &params,
-            &[
-                Bind::Texture(&sigma_t),
-                Bind::Texture(&sources),
-                Bind::Texture(&moments),
-                Bind::Buffer(&balance),
-            ],
-            &[Bind::Texture(&lobes)],
-        );
-        let sweep = gpu.stage("isotropic_residual/sweep", &[])?;
-        let reduce = gpu.stage("isotropic_residual/reduce", &[])?;
-        // Enough for every direction; a thread beyond its own grid returns.
+        let [lobe, sweep, partial, to_lobes, to_moments, balance_stage] =
+            ["lobe", "sweep", "gather_partial", "gather_lobes", "gather_moments", "balance"]
+                .map(|stage| gpu.stage(&format!("isotropic_residual/{stage}"), &[]));
+        let (lobe, sweep, partial) = (lobe?, sweep?, partial?);
+        let (to_lobes, to_moments, balance_stage) = (to_lobes?, to_moments?, balance_stage?);
         let span = |axis: fn(&Lines) -> usize| {
             problem.directions.iter().map(|direction| axis(&lines(direction, dims))).max().unwrap_or(1)
         };
+        // Enough for every direction; a thread beyond its own grid returns.
         let threads = [span(|lines| lines.n_u), span(|lines| lines.n_v * lines.n_phases)];
-        let n_batches = n_pairs.div_ceil(scratch.pairs_per_batch);
-        let batches = (0..n_batches)
+        let group_pairs = scratch.channels_per_group * n_directions;
+        let steps = scratch
+            .batches
+            .iter()
             .map(|batch| {
-                let first = batch * scratch.pairs_per_batch;
-                let pairs = scratch.pairs_per_batch.min(n_pairs - first);
                 let params = BatchParams {
                     level: params,
-                    first: first as u32,
-                    n_pairs: pairs as u32,
-                    pad_0: 0,
-                    pad_1: 0,
+                    first: batch.first as u32,
+                    n_pairs: batch.n_pairs as u32,
+                    first_channel: (batch.group * scratch.channels_per_group) as u32,
+                    pad: 0,
                     directions: std::array::from_fn(|n| direction_texel(&problem.directions, n)),
                 };
-                // The last batch must leave its sum in `moments`.
-                let (earlier, into) = if (n_batches - batch) % 2 == 1 {
+                let bind = |stage: &Stage, inputs: &[Bind], outputs: &[Bind]| {
+                    stage.bind(gpu, &params, inputs, outputs)
+                };
+                let lobes = || Bind::Buffer(&lobes[batch.group]);
+                let fields = || [Bind::Texture(sigma_t), Bind::Texture(sources)];
+                // Batches of a channel take turns, so that the last one reads what those before it left.
+                let end = (batch.group + 1) * group_pairs;
+                let to_come = (end - batch.first).div_ceil(scratch.batches[0].n_pairs);
+                let (earlier, into) = if to_come % 2 == 1 {
                     (&scratch.partial, &moments)
                 } else {
                     (&moments, &scratch.partial)
                 };
+                let gathered = || vec![Bind::Buffer(&scratch.mean_radiance), Bind::Texture(earlier)];
+                let gather = if to_come > 1 {
+                    [0, 1].map(|_| bind(&partial, &gathered(), &[Bind::Texture(into)]))
+                } else {
+                    let balanced = || [gathered(), vec![Bind::Buffer(&balance)]].concat();
+                    [
+                        bind(&to_lobes, &[balanced(), fields().to_vec()].concat(), &[lobes()]),
+                        bind(&to_moments, &balanced(), &[Bind::Texture(&moments)]),
+                    ]
+                };
+                let begins = batch.first % group_pairs == 0;
                 let outputs = [Bind::Buffer(&scratch.mean_radiance), Bind::Buffer(&line_sums)];
-                let swept = sweep.bind(gpu, &params, &[Bind::Texture(&lobes)], &outputs);
-                let inputs = [Bind::Buffer(&scratch.mean_radiance), Bind::Texture(earlier)];
-                let reduced = reduce.bind(gpu, &params, &inputs, &[Bind::Texture(into)]);
-                (swept, reduced, [threads[0], threads[1], pairs])
+                Step {
+                    start: begins.then(|| {
+                        let [a, b] = fields();
+                        bind(&lobe, &[a, b, Bind::Texture(&moments)], &[lobes()])
+                    }),
+                    sweep: bind(&sweep, &[lobes()], &outputs),
+                    threads: [threads[0], threads[1], batch.n_pairs],
+                    gather,
+                    completes: to_come == 1,
+                }
             })
             .collect();
-        let balance_stage = gpu.stage("isotropic_residual/balance", &[])?;
         let bind_balance = |rebalance: u32| {
             let params = BalanceParams {
                 level: params,
@@ -285,20 +336,16 @@ impl Level {
             balance_stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&balance)])
         };
         let (rebalance, keep) = (bind_balance(1), bind_balance(0));
-        let n_channels = problem.n_channels;
         Ok(Self {
             dims,
             params,
-            sigma_t,
-            sources,
             moments,
             balance,
             layers,
-            lobe,
-            batches,
+            n_channels: problem.n_channels,
+            steps,
             rebalance,
             keep,
-            n_channels,
         })
     }
 
@@ -307,16 +354,24 @@ impl Level {
         self.layers
     }
 
-    /// One sweep: lobes from the moments, moments from the lines, and the factor that balances them
+    /// `n` sweeps, from the moments to the moments, each followed by the factor that balances power
     /// (1 unless `balanced`).
-    pub(super) fn sweep(&self, recorder: &mut Recorder, balanced: bool) {
-        recorder.dispatch(&self.lobe, self.layers);
-        for (sweep, reduce, threads) in &self.batches {
-            recorder.dispatch(sweep, *threads);
-            recorder.dispatch(reduce, self.layers);
+    pub(super) fn sweep(&self, recorder: &mut Recorder, n: usize, balanced: bool) {
+        for step in self.steps.iter().filter_map(|step| step.start.as_ref()) {
+            recorder.dispatch(step, self.layers);
         }
         let balance = if balanced { &self.rebalance } else { &self.keep };
-        recorder.dispatch(balance, [1, 1, self.n_channels]);
+        for idx in 0..n {
+            let into = usize::from(idx + 1 == n);
+            for step in &self.steps {
+                recorder.dispatch(&step.sweep, step.threads);
+                if step.completes {
+                    // Channels that are still to come get a stale factor here, and theirs before it is read.
+                    recorder.dispatch(balance, [1, 1, self.n_channels]);
+                }
+                recorder.dispatch(&step.gather[into], self.layers);
+            }
+        }
     }
 }
 

@@ -17,6 +17,7 @@ use crate::wire::{Beams, Channels, Medium};
 mod level;
 mod solver;
 mod sources;
+mod thick;
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 

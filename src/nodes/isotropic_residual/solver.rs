@@ -5,8 +5,8 @@ use std::sync::Arc;
 use super::super::Run;
 use super::level::{Level, Problem, REMEDY, Scratch};
 use super::sources::Sources;
-use super::{Effort, Kind};
-use crate::gpu::{Bind, Format, Gpu, Texture};
+use super::{Effort, Kind, thick};
+use crate::gpu::{Bind, Format, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
 use crate::wire::{Channels, Medium, Residual};
@@ -21,6 +21,12 @@ mirror! {
 
 /// Grids are halved while an axis is longer than this.
 const COARSEST: usize = 8;
+/// Sweeps of one submission, between which a cancel is heard.
+const SWEEPS_AT_ONCE: usize = 4;
+/// `reference` stops when phi changes by less than this from one round of sweeps to the next, or after so
+/// many rounds.
+const CONVERGED: f64 = 1e-5;
+const MAX_ROUNDS: usize = 2000;
 
 /// Solves for the residual.
 pub(super) fn solve(
@@ -31,50 +37,92 @@ pub(super) fn solve(
     effort: Effort,
     channels: Channels,
 ) -> Result<Residual, NodeError> {
-    let gpu = run.gpu;
     let levels = levels(run, medium, sources, problem)?;
     for idx in (0..levels.len()).rev() {
-        let level = &levels[idx];
         if let Some(coarser) = levels.get(idx + 1) {
-            prolong(run, coarser, level)?;
+            prolong(run, coarser, &levels[idx])?;
         }
-        let sweeps = if idx > 0 || levels.len() == 1 { effort.coarse_sweeps } else { effort.sweeps };
-        for _ in 0..sweeps {
-            // A submission each: a cancel is heard after every sweep.
-            let mut recorder = gpu.recorder("isotropic_residual");
-            level.sweep(&mut recorder, true);
-            run.finish(recorder)?;
+        let coarse = idx > 0 || levels.len() == 1;
+        match effort.kind {
+            Kind::Thick => thick::solve_level(run, &levels[idx..], idx == 0)?,
+            _ => sweep(run, &levels[idx], if coarse { effort.coarse_sweeps } else { effort.sweeps }, true)?,
         }
     }
-    finish(run, &levels[0], problem, channels)
+    if effort.kind == Kind::Reference {
+        converge(run, &levels[0])?;
+    }
+    let finest = levels.into_iter().next().expect("there is at least the medium's own grid");
+    let factors: Vec<f32> = run.gpu.read_buffer(&finest.balance)?;
+    let balance = std::array::from_fn(|c| if c < problem.n_channels { f64::from(factors[c]) } else { 1.0 });
+    Ok(Residual { moments: Arc::new(finest.moments), channels, balance })
 }
 
 /// All grids, finest first.
 fn levels(run: &Run, medium: &Medium, sources: Sources, problem: &Problem) -> Result<Vec<Level>, NodeError> {
     let gpu = run.gpu;
-    let scratch = Scratch::new(gpu, problem, medium.lattice.dims)?;
+    let scratch = Scratch::new(gpu, problem, medium.lattice.dims, gpu.max_binding_bytes())?;
     let mut cell_m = medium.lattice.cell_m;
-    let mut fields = [Arc::clone(&medium.sigma_t), Arc::new(sources.field)];
-    let mut levels = Vec::new();
+    let fields = [&*medium.sigma_t, &sources.field];
+    let mut levels = vec![Level::new(gpu, problem, &scratch, cell_m, fields, &sources.sums)?];
+    let mut coarser: Option<[Texture; 2]> = None;
     loop {
-        let level = Level::new(gpu, problem, &scratch, cell_m, fields.clone(), &sources.sums)?;
-        let dims = level.dims;
-        levels.push(level);
+        let dims = levels[levels.len() - 1].dims;
         let longest = dims.into_iter().max().unwrap_or(0);
         if longest <= COARSEST || dims.iter().any(|n| n % 2 == 1) {
             return Ok(levels);
         }
         let half = dims.map(|n| n / 2);
-        fields = [
-            Arc::new(restrict(run, &fields[0], half, Format::R32Float)?),
-            Arc::new(restrict(run, &fields[1], problem.layers(half), Format::Rgba32Float)?),
+        let [sigma_t, field] = match &coarser {
+            Some([sigma_t, field]) => [sigma_t, field],
+            None => fields,
+        };
+        let next = [
+            restrict(run, sigma_t, half, Format::R32Float)?,
+            restrict(run, field, problem.layers(half), Format::Rgba32Float)?,
         ];
         cell_m *= 2.0;
+        levels.push(Level::new(gpu, problem, &scratch, cell_m, [&next[0], &next[1]], &sources.sums)?);
+        coarser = Some(next);
     }
 }
 
+/// So many sweeps of a level.
+pub(super) fn sweep(run: &Run, level: &Level, n: usize, balanced: bool) -> Result<(), NodeError> {
+    for first in (0..n).step_by(SWEEPS_AT_ONCE) {
+        let mut recorder = run.gpu.recorder("isotropic_residual");
+        level.sweep(&mut recorder, SWEEPS_AT_ONCE.min(n - first), balanced);
+        run.finish(recorder)?;
+    }
+    Ok(())
+}
+
+/// Sweeps until nothing changes.
+fn converge(run: &Run, level: &Level) -> Result<(), NodeError> {
+    let read = || -> Result<Vec<[f32; 4]>, NodeError> { Ok(run.gpu.read_texture(&level.moments)?) };
+    let mut before = read()?;
+    for _ in 0..MAX_ROUNDS {
+        sweep(run, level, SWEEPS_AT_ONCE, true)?;
+        let after = read()?;
+        let sum: f64 = after.iter().map(|m| f64::from(m[0])).sum();
+        let changed: f64 = after.iter().zip(&before).map(|(a, b)| f64::from((a[0] - b[0]).abs())).sum();
+        if changed <= CONVERGED * sum {
+            return Ok(());
+        }
+        before = after;
+    }
+    Err(NodeError::new(format!(
+        "quality reference did not settle in {} sweeps: this medium is too deep for it, choose quality thick",
+        MAX_ROUNDS * SWEEPS_AT_ONCE
+    )))
+}
+
 /// Box averages of a field.
-fn restrict(run: &Run, fine: &Texture, dims: [usize; 3], format: Format) -> Result<Texture, NodeError> {
+pub(super) fn restrict(
+    run: &Run,
+    fine: &Texture,
+    dims: [usize; 3],
+    format: Format,
+) -> Result<Texture, NodeError> {
     let gpu = run.gpu;
     let coarse = gpu.texture3("a coarser grid", dims, format, REMEDY)?;
     let params = RestrictParams { dims: dims.map(|n| n as u32), pad: 0 };
@@ -89,24 +137,10 @@ fn restrict(run: &Run, fine: &Texture, dims: [usize; 3], format: Format) -> Resu
 fn prolong(run: &Run, coarser: &Level, level: &Level) -> Result<(), NodeError> {
     let gpu = run.gpu;
     let sampler = gpu.linear_sampler();
-    let inputs = [Bind::Texture(&coarser.moments), Bind::Sampler(&sampler), Bind::Buffer(&coarser.balance)];
+    let inputs = [Bind::Texture(&coarser.moments), Bind::Sampler(&sampler)];
     let stage = gpu.stage("isotropic_residual/prolong", &[])?;
     let mut recorder = gpu.recorder("isotropic_residual");
     recorder
         .dispatch(&stage.bind(gpu, &level.params, &inputs, &[Bind::Texture(&level.moments)]), level.layers());
     run.finish(recorder)
-}
-
-/// The finest level's field, rebalanced.
-fn finish(run: &Run, level: &Level, problem: &Problem, channels: Channels) -> Result<Residual, NodeError> {
-    let gpu: &Gpu = run.gpu;
-    let result = gpu.texture3("residual", level.layers(), Format::Rgba32Float, REMEDY)?;
-    let stage = gpu.stage("isotropic_residual/finish", &[])?;
-    let inputs = [Bind::Texture(&level.moments), Bind::Buffer(&level.balance)];
-    let mut recorder = gpu.recorder("isotropic_residual");
-    recorder.dispatch(&stage.bind(gpu, &level.params, &inputs, &[Bind::Texture(&result)]), level.layers());
-    run.finish(recorder)?;
-    let factors: Vec<f32> = gpu.read_buffer(&level.balance)?;
-    let balance = std::array::from_fn(|c| if c < problem.n_channels { f64::from(factors[c]) } else { 1.0 });
-    Ok(Residual { moments: Arc::new(result), channels, balance })
 }

@@ -1,0 +1,21 @@
+// A thread: the lobe of one cell and channel for the next sweep, straight from the last one.
+
+#import "isotropic_residual/gather.wgsl"
+#import "isotropic_residual/source_lobe.wgsl"
+
+@group(1) @binding(2) var<storage, read> balance: array<f32>;
+@group(1) @binding(3) var sigma_t: texture_3d<f32>;
+@group(1) @binding(4) var sources: texture_3d<f32>;
+@group(2) @binding(0) var<storage, read_write> lobes: array<vec4u>;
+
+@compute @workgroup_size(8, 8, 1)
+fn isotropic_residual_gather_lobes(@builtin(global_invocation_id) id: vec3u) {
+    let level = batch.level;
+    if !has_cell(id) {
+        return;
+    }
+    let c = id.z / level.dims.z;
+    let extinction = textureLoad(sigma_t, vec3u(id.xy, id.z % level.dims.z), 0).x;
+    let moments = gather_balanced(id, balance[c]);
+    lobes[lobe_index(id)] = source_lobe(level, c, extinction, textureLoad(sources, id, 0), moments);
+}
