@@ -5,6 +5,7 @@
 
 #import "lib/spectrum_{channels}.wgsl"
 #import "lib/walk.wgsl"
+#import "lib/block.wgsl"
 #import "lib/beam.wgsl"
 #import "lib/lobe.wgsl"
 #import "lib/transmittance.wgsl"
@@ -72,6 +73,7 @@ struct Pixel {
 @group(1) @binding(5) var peak: texture_3d<f32>;
 @group(1) @binding(6) var environment: texture_2d<f32>;
 @group(1) @binding(7) var linear_around: sampler;
+@group(1) @binding(8) var blocks: texture_3d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Radiance under which the rest of a ray is not worth its steps, against what came in before.
@@ -139,6 +141,8 @@ fn march(direction: vec3f) -> Layers {
             s = extinction(sigma_t, linear_clamp, p);
         }
         if s <= 0.0 {
+            let ahead = floor((empty_until(blocks, params.eye, direction, p) - span.x) / dt - 0.5);
+            n = max(n, ahead);
             continue;
         }
         let step_tau = s * length_m;

@@ -15,6 +15,8 @@ pub struct Medium {
     pub lattice: Lattice,
     /// sigma_t [1/m] at the centers of cells; one R32Float texel a cell, void on the border.
     pub sigma_t: Arc<Texture>,
+    /// The largest sigma_t that a sample in a block of 8³ cells can meet [1/m]; one R32Float texel a block.
+    pub blocks: Arc<Texture>,
     /// The largest sigma_t [1/m].
     pub sigma_t_max: f64,
     /// sigma_s / sigma_t.

@@ -1,9 +1,11 @@
 //! `principal_propagation`: parallel light through the medium (DESIGN 6.3).
 
 use super::{NodeKind, Run, no_files, walk};
-use crate::graph::{Category, NodeError, NodeSpec, PortSpec, PortType, Value};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::light::Ordinates;
 use crate::wire::{Beam, Beams, Medium, Place};
+
+mod scan;
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 
@@ -19,8 +21,15 @@ static SPEC: NodeSpec = NodeSpec {
         PortSpec::new("ordinates", PortType::Ordinates, "the light"),
     ],
     outputs: &[PortSpec::new("beams", PortType::Beams, "the light in the medium")],
-    params: &[],
+    params: &[ParamSpec::choice("scheme", &["auto", "scan", "walk"]).doc(
+        "walk: from every corner to the light, exact but for its samples; scan: running sums along lines that follow the beam, \
+         its cost independent of the way through the medium; auto: walk where it is affordable.",
+    )],
 };
+
+/// Samples that a walk may take under `auto`, on a software driver (about 8 ns each) and on a GPU.
+const WALK_CPU: f64 = 2e8;
+const WALK_GPU: f64 = 2e11;
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
@@ -34,7 +43,17 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             a0: ordinate.a0,
         })
         .collect();
-    let tau = walk::walk(run, medium, &beams)?;
+    let scans = match run.params.text("scheme") {
+        "scan" => true,
+        "walk" => false,
+        _ => scan::walk_samples(medium, &beams) > if run.gpu.is_cpu() { WALK_CPU } else { WALK_GPU },
+    };
+    // A shape in closed form needs no samples at all.
+    let tau = if scans && medium.homogeneous.is_none() {
+        scan::scan(run, medium, &beams)?
+    } else {
+        walk::walk(run, medium, &beams)?
+    };
     let bytes = tau.texture.bytes();
     Ok(vec![Value::new(PortType::Beams, bytes, Beams { beams, tau, ambient: light.ambient })])
 }

@@ -128,6 +128,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&table),
         Bind::Texture(&backdrop.map),
         Bind::Sampler(&around),
+        Bind::Texture(&medium.blocks),
     ];
 
     let stage = gpu.stage("raymarch", &[("channels", channels.count.to_string())])?;
