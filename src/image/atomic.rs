@@ -44,56 +44,6 @@ pub enum WriteError {
     },
 }
 
-/// Whether [`write`] could write to `path`, as far as one can tell before: nothing is changed. To be
-/// asked before an hour of work.
-///
-/// # Errors
-/// As [`write`], except for what only the bytes themselves show (a full disk).
-pub fn check(path: &Path) -> Result<(), WriteError> {
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    match fs::metadata(&target) {
-        Ok(meta) if meta.is_dir() => return Err(WriteError::IsFolder { path: path.to_owned() }),
-        Ok(meta) if !meta.is_file() => return Ok(()),
-        _ => {}
-    }
-    let folder = folder_of(&target);
-    // Folders that are missing will be made in the first one that is there.
-    let there = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
-    let there = if there.as_os_str().is_empty() { Path::new(".") } else { there };
-    match temporary().tempfile_in(there) {
-        Ok(_) => Ok(()),
-        Err(source) if there == folder => {
-            Err(WriteError::File { path: path.to_owned(), source: plain(source) })
-        }
-        Err(source) => Err(WriteError::Folder { folder: folder.to_owned(), source: plain(source) }),
-    }
-}
-
-fn folder_of(target: &Path) -> &Path {
-    match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    }
-}
-
-fn temporary() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".tyndall-").suffix(".part");
-    // A temporary file is private by default; the result is to be as open as any other new
-    // file (the umask applies), or as the file that it replaces.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder
-}
-
-/// Without the name of the temporary file, which would only confuse.
-fn plain(error: io::Error) -> io::Error {
-    error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
-}
-
 /// Writes `bytes` to `path`, replacing what was there; creates the folder when missing.
 ///
 /// # Errors
@@ -117,8 +67,47 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     replace(folder, &target, bytes).map_err(failed)
 }
 
+/// Whether [`write`] could write to `path`, as far as one can tell before: nothing is changed. To be
+/// asked before an hour of work.
+///
+/// # Errors
+/// As [`write`], except for what only the bytes themselves show (a full disk).
+pub fn check(path: &Path) -> Result<(), WriteError> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    match fs::metadata(&target) {
+        Ok(meta) if meta.is_dir() => return Err(WriteError::IsFolder { path: path.to_owned() }),
+        Ok(meta) if !meta.is_file() => return Ok(()),
+        _ => {}
+    }
+    let folder = folder_of(&target);
+    // Folders that are missing will be made in the first one that is there.
+    let there = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    let there = if there.as_os_str().is_empty() { Path::new(".") } else { there };
+    match temporary(there) {
+        Ok(_) => Ok(()),
+        Err(source) if there == folder && folder.is_dir() => {
+            Err(WriteError::File { path: path.to_owned(), source })
+        }
+        Err(source) => Err(WriteError::Folder { folder: folder.to_owned(), source }),
+    }
+}
+
+fn folder_of(target: &Path) -> &Path {
+    match target.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// An empty file beside the target that vanishes unless it is kept. It is as open as any other new file (the
+/// umask applies), where a temporary file is private by default.
+fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let open = |path: &Path| fs::OpenOptions::new().write(true).create_new(true).open(path);
+    tempfile::Builder::new().prefix(".tyndall-").suffix(".part").make_in(folder, open)
+}
+
 fn replace(folder: &Path, target: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = temporary().tempfile_in(folder).map_err(plain)?;
+    let mut file = temporary(folder)?;
     if let Ok(meta) = fs::metadata(target) {
         file.as_file().set_permissions(meta.permissions())?;
     }
