@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use tyndall::image::metrics::{Metrics, compare, error_map};
 use tyndall::image;
+use tyndall::image::metrics::{Metrics, compare, error_map};
 
 use super::output::{TITLE, WRONG, columns, print, print_json};
 
@@ -45,14 +45,17 @@ fn parse_tolerance(text: &str) -> Result<f64, String> {
 /// # Errors
 /// When a file cannot be read or written, or sizes differ.
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
+    if let Some(path) = &args.map {
+        if image::Format::of(path)? != image::Format::Png {
+            anyhow::bail!("--map {}: the map is a .png; change the ending", path.display());
+        }
+        image::atomic::check(path)?;
+    }
     let picture = image::read(&args.picture)?;
     let reference = image::read(&args.reference)?;
     let mask = args.mask.as_deref().map(image::read).transpose()?;
     let metrics = compare(&picture, &reference, mask.as_ref())?;
     if let Some(path) = &args.map {
-        if image::Format::of(path)? != image::Format::Png {
-            anyhow::bail!("--map {}: the map is a .png; change the ending", path.display());
-        }
         image::write(path, &error_map(&picture, &reference)?)?;
     }
     if args.json {

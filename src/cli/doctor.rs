@@ -48,9 +48,6 @@ const GRAPH: &str = r#"{ "tyndall": 1,
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let found = adapters();
     let mut text = format!("{TITLE}Tyndall {}{TITLE:#}\n", env!("CARGO_PKG_VERSION"));
-    if found.is_empty() {
-        text += "no adapter with Vulkan, Metal or DX12\n";
-    }
     for adapter in &found {
         describe(adapter, &mut text);
     }
@@ -63,6 +60,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
             ExitCode::SUCCESS
         }
         Err(why) => {
+            // Without any adapter the help says it all.
+            let why = if found.is_empty() { "there is no adapter with Vulkan, Metal or DX12" } else { &why };
             let _ = writeln!(text, "{WRONG}No picture can be rendered:{WRONG:#} {why}");
             text += help(&found);
             ExitCode::from(REFUSED)

@@ -10,6 +10,7 @@ use tyndall::volume::sequence::Sequence;
 use tyndall::volume::stats::Sample;
 use tyndall::volume::vdb::{File, GridSummary, Summary};
 
+use super::frames::is_pattern;
 use super::output::{NAME, TITLE, WRONG, columns, print, print_json, size};
 
 /// Show what is in a .vdb file, a picture, or a sequence (a folder or a pattern such as smoke_####.vdb).
@@ -29,13 +30,19 @@ pub struct Args {
 pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
     let path = &args.path;
     let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-    let is_pattern = super::frames::is_pattern(path) && !path.exists();
-    if path.is_dir() || is_pattern {
-        show(args, &FramesJson::find(path)?, describe_frames)?;
-    } else if ending.as_deref() == Some("vdb") {
-        show(args, &File::open(path)?.summary(), describe_volume)?;
-    } else {
-        show(args, &PictureJson::of(path, &image::read(path)?), describe_picture)?;
+    match ending.as_deref() {
+        _ if path.is_dir() || is_pattern(path) && !path.exists() => {
+            show(args, &FramesJson::find(path)?, describe_frames)?;
+        }
+        _ if !path.exists() => anyhow::bail!("{}: there is no such file or folder", path.display()),
+        Some("vdb") => show(args, &File::open(path)?.summary(), describe_volume)?,
+        Some("exr" | "hdr" | "png") => {
+            show(args, &PictureJson::of(path, &image::read(path)?), describe_picture)?
+        }
+        _ => anyhow::bail!(
+            "{}: cannot look into this; name a .vdb, .exr, .hdr or .png file, a folder, or a pattern such as smoke_####.vdb",
+            path.display()
+        ),
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -145,17 +152,21 @@ fn grid_rows(grid: &GridSummary) -> Vec<Vec<String>> {
             }
         }
         if let (Some(min), Some(max)) = (figures.bbox_min, figures.bbox_max) {
-            let extent: Vec<String> =
-                (0..3).map(|axis| (i64::from(max[axis]) - i64::from(min[axis]) + 1).to_string()).collect();
-            row("extent", format!("{} voxels, {min:?} to {max:?}", extent.join(" x ")));
+            let [nx, ny, nz] = [0, 1, 2].map(|axis| u64::from(max[axis].abs_diff(min[axis])) + 1);
+            row("extent", format!("{nx} x {ny} x {nz} voxels, {min:?} to {max:?}"));
+            let bytes = nx.saturating_mul(ny).saturating_mul(nz).saturating_mul(4);
+            row("memory", format!("{} as a dense field of 32 bits", size(bytes)));
         }
     }
     if let Some(voxel) = grid.voxel_size {
-        row("voxel size", format!("{} x {} x {}", voxel[0], voxel[1], voxel[2]));
+        row("voxel size", voxel.map(number).join(" x "));
     }
     if let Some(matrix) = &grid.world_from_index {
         for (idx, numbers) in matrix.chunks(4).enumerate() {
-            row(if idx == 0 { "world from index" } else { "" }, format!("{numbers:?}"));
+            row(
+                if idx == 0 { "world from index" } else { "" },
+                numbers.iter().copied().map(number).collect::<Vec<_>>().join(" "),
+            );
         }
     }
     if let Some(background) = grid.background {
@@ -170,8 +181,8 @@ fn grid_rows(grid: &GridSummary) -> Vec<Vec<String>> {
 
 fn sample_text(sample: Sample) -> String {
     match sample {
-        Sample::Scalar(x) => x.to_string(),
-        Sample::Vector(v) => format!("{v:?}"),
+        Sample::Scalar(x) => number(x),
+        Sample::Vector(v) => v.map(number).join(" "),
     }
 }
 
@@ -247,22 +258,27 @@ fn describe_picture(found: &PictureJson) -> String {
     text
 }
 
-/// Numbers with five digits.
 fn figures<T: Copy + Into<f64>>(values: &[Option<T>]) -> String {
-    let texts = values.iter().map(|value| match value {
-        Some(value) => {
-            let value: f64 = (*value).into();
-            let is_plain = value == 0.0 || (1e-3..1e6).contains(&value.abs());
-            if is_plain { format!("{value:.5}") } else { format!("{value:.4e}") }
-        }
-        None => "-".to_owned(),
-    });
+    let texts = values.iter().map(|value| value.map_or("-".to_owned(), |value| number(value.into())));
     texts.collect::<Vec<_>>().join(" ")
+}
+
+/// With six digits: `0.0333333`, `60`, `1.5e-7`.
+fn number(x: f64) -> String {
+    let rounded: f64 = format!("{x:.5e}").parse().unwrap_or(x);
+    let is_plain = rounded == 0.0 || !rounded.is_finite() || (1e-4..1e9).contains(&rounded.abs());
+    if is_plain { rounded.to_string() } else { format!("{rounded:e}") }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_have_six_digits() {
+        let texts = [1.0 / 30.0, 60.0, -1.5e-7, 0.0, f64::NAN, 1e12 / 3.0, 123_456.78].map(number);
+        assert_eq!(texts, ["0.0333333", "60", "-1.5e-7", "0", "NaN", "3.33333e11", "123457"]);
+    }
 
     #[test]
     fn runs_of_numbers() {
