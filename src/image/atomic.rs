@@ -62,25 +62,52 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
         }
         _ => {}
     }
-    let folder = match target.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    let folder = folder_of(&target);
     fs::create_dir_all(folder).map_err(|source| WriteError::Folder { folder: folder.to_owned(), source })?;
     replace(folder, &target, bytes).map_err(failed)
 }
 
-fn replace(folder: &Path, target: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".tyndall-").suffix(".part");
-    // A temporary file is private by default; the result is to be as open as any other new
-    // file (the umask applies), or as the file that it replaces.
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        builder.permissions(fs::Permissions::from_mode(0o666));
+/// Whether [`write`] could write to `path`, as far as one can tell before: nothing is changed. To be
+/// asked before an hour of work.
+///
+/// # Errors
+/// As [`write`], except for what only the bytes themselves show (a full disk).
+pub fn check(path: &Path) -> Result<(), WriteError> {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    match fs::metadata(&target) {
+        Ok(meta) if meta.is_dir() => return Err(WriteError::IsFolder { path: path.to_owned() }),
+        Ok(meta) if !meta.is_file() => return Ok(()),
+        _ => {}
     }
-    let mut file = builder.tempfile_in(folder)?;
+    let folder = folder_of(&target);
+    // Folders that are missing will be made in the first one that is there.
+    let there = folder.ancestors().find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    let there = if there.as_os_str().is_empty() { Path::new(".") } else { there };
+    match temporary(there) {
+        Ok(_) => Ok(()),
+        Err(source) if there == folder && folder.is_dir() => {
+            Err(WriteError::File { path: path.to_owned(), source })
+        }
+        Err(source) => Err(WriteError::Folder { folder: folder.to_owned(), source }),
+    }
+}
+
+fn folder_of(target: &Path) -> &Path {
+    match target.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
+}
+
+/// An empty file beside the target that vanishes unless it is kept. It is as open as any other new file (the
+/// umask applies), where a temporary file is private by default.
+fn temporary(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let open = |path: &Path| fs::OpenOptions::new().write(true).create_new(true).open(path);
+    tempfile::Builder::new().prefix(".tyndall-").suffix(".part").make_in(folder, open)
+}
+
+fn replace(folder: &Path, target: &Path, bytes: &[u8]) -> io::Result<()> {
+    let mut file = temporary(folder)?;
     if let Ok(meta) = fs::metadata(target) {
         file.as_file().set_permissions(meta.permissions())?;
     }
@@ -130,6 +157,28 @@ mod tests {
         let error = write(dir.path(), b"x").unwrap_err();
         assert!(matches!(error, WriteError::IsFolder { .. }), "{error}");
         assert!(names(dir.path()).is_empty());
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_known_before() {
+        let dir = tempfile::tempdir().unwrap();
+        check(&dir.path().join("a/b/out.bin")).unwrap();
+        check(Path::new("out-that-is-not-there.bin")).unwrap();
+        assert!(names(dir.path()).is_empty());
+        assert!(matches!(check(dir.path()), Err(WriteError::IsFolder { .. })));
+        let file = dir.path().join("file");
+        fs::write(&file, b"kept").unwrap();
+        check(&file).unwrap();
+        assert!(matches!(check(&file.join("a/out.bin")), Err(WriteError::Folder { .. })));
+        assert_eq!(fs::read(&file).unwrap(), b"kept");
+        assert_eq!(names(dir.path()), ["file"]);
+        #[cfg(target_os = "linux")]
+        {
+            let error = check(Path::new("/proc/out.bin")).unwrap_err().to_string();
+            assert!(error.starts_with("cannot write /proc/out.bin: "), "{error}");
+            assert!(!error.contains(".tyndall-"), "{error}");
+            check(Path::new("/dev/null")).unwrap();
+        }
     }
 
     // A name that is longer than any file system allows fails after the temporary file was

@@ -154,6 +154,12 @@ pub enum ImageError {
         /// Row, from the top.
         y: usize,
     },
+    /// The ending says no format that is written.
+    #[error("cannot write {path}: pictures are written as .exr or .png; change the ending")]
+    Ending {
+        /// The file.
+        path: PathBuf,
+    },
     /// A layer's name cannot be a channel's name.
     #[error(
         "cannot write {path}: layer name {name:?}; 1 to 200 letters, digits, '_', '-' or '.' are allowed, rename the layer"
@@ -176,6 +182,40 @@ impl ImageError {
 
     fn not_supported(path: &Path, found: impl Into<String>, remedy: &'static str) -> Self {
         Self::NotSupported { path: path.to_owned(), found: found.into(), remedy }
+    }
+}
+
+/// What a picture is written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// OpenEXR with all layers.
+    Exr,
+    /// 8-bit sRGB of the beauty.
+    Png,
+}
+
+impl Format {
+    /// By the ending of the name, case ignored.
+    ///
+    /// # Errors
+    /// [`ImageError::Ending`] for any other ending and for none.
+    pub fn of(path: &Path) -> Result<Self, ImageError> {
+        match path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase).as_deref() {
+            Some("exr") => Ok(Self::Exr),
+            Some("png") => Ok(Self::Png),
+            _ => Err(ImageError::Ending { path: path.to_owned() }),
+        }
+    }
+}
+
+/// Writes an image in the format that its name's ending says; see [`exr::write`] and [`png::write`].
+///
+/// # Errors
+/// As [`Format::of`] and the writers.
+pub fn write(path: &Path, image: &Image) -> Result<(), ImageError> {
+    match Format::of(path)? {
+        Format::Exr => exr::write(path, image),
+        Format::Png => png::write(path, image),
     }
 }
 

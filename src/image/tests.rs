@@ -45,6 +45,23 @@ fn environments_keep_beauty_alone() {
 }
 
 #[test]
+fn endings_choose_the_format() {
+    let dir = tempfile::tempdir().unwrap();
+    let image = Image::new(1, 1, vec![1.0; 3]);
+    for (name, format) in [("a.exr", Format::Exr), ("a.b.PNG", Format::Png)] {
+        let path = dir.path().join(name);
+        assert_eq!(Format::of(&path).unwrap(), format);
+        write(&path, &image).unwrap();
+        assert_eq!(png::has_signature(&std::fs::read(&path).unwrap()), format == Format::Png);
+    }
+    for name in ["a", "a.jpg", ".png", "exr"] {
+        let error = write(&dir.path().join(name), &image).unwrap_err().to_string();
+        assert!(error.ends_with("are written as .exr or .png; change the ending"), "{error}");
+    }
+    assert_eq!(std::fs::read_dir(dir.path()).unwrap().count(), 2);
+}
+
+#[test]
 fn real_environment_maps() {
     let Some(shared) = crate::shared_dir() else {
         eprintln!("skipped: no shared files");

@@ -29,16 +29,6 @@ fn files(params: &Params) -> Result<Vec<PathBuf>, NodeError> {
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let picture: &Image = run.inputs.one("image");
-    let path = run.params.path("path");
-    match path.extension().and_then(|ending| ending.to_str()).map(str::to_lowercase).as_deref() {
-        Some("exr") => image::exr::write(path, picture).map_err(NodeError::new)?,
-        Some("png") => image::png::write(path, picture).map_err(NodeError::new)?,
-        _ => {
-            return Err(NodeError::new(format!(
-                "{}: pictures are written as .exr or .png: change the ending",
-                path.display()
-            )));
-        }
-    }
+    image::write(run.params.path("path"), picture).map_err(NodeError::new)?;
     Ok(run.inputs.values("image").to_vec())
 }

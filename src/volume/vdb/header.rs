@@ -82,16 +82,22 @@ impl Descriptor {
         let type_name = cursor.string()?;
         let parent = Some(cursor.string()?).filter(|name| !name.is_empty());
         let offset = cursor.offset();
-        let [grid, buffers, end] = [cursor.i64()?, cursor.i64()?, cursor.i64()?];
+        let [grid, _buffers, end] = [cursor.i64()?, cursor.i64()?, cursor.i64()?];
         let here = cursor.offset();
         let [grid_offset, end_offset] = [grid, end].map(|at| u64::try_from(at).unwrap_or(0));
         if let Some(file_end) = file_end
             && (grid_offset < here || end_offset < grid_offset || end_offset > file_end)
         {
             let name = listed_name(&unique_name);
-            let what = format!(
-                "grid `{name}` at {grid}, buffers at {buffers}, end at {end}, between {here} and the file's end at {file_end}"
-            );
+            let what = if end_offset > file_end {
+                format!(
+                    "grid `{name}` reaches to byte {end}, but the file ends at {file_end}: it is cut short, copy it again"
+                )
+            } else {
+                format!(
+                    "grid `{name}` claims the bytes {grid} to {end}, where {here} to {file_end} is possible: the file is damaged, copy it again"
+                )
+            };
             return Err(Fault::invalid(offset, what));
         }
         let (tree, half) =

@@ -1,0 +1,81 @@
+//! The command line: one file a subcommand, nothing but clients of the library.
+//!
+//! A subcommand gives its exit code, or an error that is printed here as `error: ..`: 0 is done, 1 is
+//! "some frames failed" (`render`) or "too different" (`compare`), 2 is wrong usage or input, 130 is
+//! Ctrl-C. What is wrong in a graph file is printed a line each, with the file's name before it. Results
+//! go to stdout, complaints and progress to stderr; colors are for terminals alone. Every path on the
+//! command line is relative to the working directory. Tested by running the program, in `tests/cli.rs`.
+
+use std::ffi::OsString;
+use std::path::Path;
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use tyndall::graph::did_you_mean;
+
+mod compare;
+mod doctor;
+mod frames;
+mod inspect;
+mod nodes;
+mod output;
+mod progress;
+mod render;
+mod scene;
+mod stats;
+
+/// Light in smoke, fire, cloud and any other participating medium, as a graph of nodes.
+#[derive(Parser)]
+#[command(name = "tyndall", version, arg_required_else_help = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Render(render::Args),
+    Inspect(inspect::Args),
+    Compare(compare::Args),
+    Nodes(nodes::Args),
+    Doctor(doctor::Args),
+    #[command(external_subcommand)]
+    Other(Vec<OsString>),
+}
+
+/// Wrong usage or input, or nothing could be done.
+const REFUSED: u8 = 2;
+
+/// Runs what the command line says.
+pub fn main() -> ExitCode {
+    let result = match Cli::parse().command {
+        Command::Render(args) => render::run(&args),
+        Command::Inspect(args) => inspect::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Nodes(args) => nodes::run(&args),
+        Command::Doctor(args) => doctor::run(&args),
+        Command::Other(words) => Err(unknown(&words)),
+    };
+    result.unwrap_or_else(|error| {
+        match error.downcast_ref::<output::Lines>() {
+            Some(lines) => output::complain(lines),
+            None => output::error(&error.to_string()),
+        }
+        ExitCode::from(REFUSED)
+    })
+}
+
+/// For a first word that is no subcommand: most likely a graph to look at, or a slip of the finger.
+fn unknown(words: &[OsString]) -> anyhow::Error {
+    let word = words.first().map(|word| word.to_string_lossy()).unwrap_or_default();
+    if word.ends_with(".json") || Path::new(&*word).exists() {
+        return anyhow::anyhow!(
+            "there is no editor yet; to render, type `tyndall render {word} -o picture.exr`"
+        );
+    }
+    let command = Cli::command();
+    let names: Vec<&str> =
+        command.get_subcommands().map(clap::Command::get_name).filter(|name| *name != "help").collect();
+    let near = did_you_mean(&word, names.iter().copied());
+    anyhow::anyhow!("there is no subcommand '{word}';{near} allowed are {}", names.join(", "))
+}

@@ -1,0 +1,250 @@
+//! The graph as the command line wants it: parameters set, outputs chosen, everything checked.
+//!
+//! Whatever is written is written by a save_image node. `--node` of another node, or `-o` for a graph
+//! without any, adds one to the graph in memory. Nothing is rendered before all problems are known.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::Value as Json;
+use tyndall::graph::{Document, DocumentError, End, Node, PortType, Target, Wire, check, did_you_mean};
+use tyndall::image::{Format, atomic};
+use tyndall::nodes::catalog;
+
+use super::frames;
+use super::output::Lines;
+use super::render::Args;
+
+const SAVE: &str = "save_image";
+const LOAD: &str = "load_vdb";
+const CAMERA: &str = "camera";
+
+/// What is to be rendered.
+pub struct Scene {
+    /// The graph.
+    pub document: Document,
+    /// What is written.
+    pub outputs: Vec<Output>,
+}
+
+/// A picture to be written.
+#[derive(Debug, Clone)]
+pub struct Output {
+    /// The save_image node.
+    pub node: String,
+    /// Relative to the working directory; may be a pattern with `#` for the frame.
+    pub path: PathBuf,
+}
+
+impl Scene {
+    /// Reads the graph and applies the command line.
+    ///
+    /// # Errors
+    /// All that is wrong in the graph, as [`Lines`]; else the first thing that is wrong on the command
+    /// line.
+    pub fn load(args: &Args) -> anyhow::Result<Self> {
+        let mut document = Document::load(&args.graph).map_err(|error| unreadable(&args.graph, error))?;
+        set_params(&mut document, &args.set)?;
+        if let Some([width, height]) = args.size {
+            set_size(&mut document, width, height)?;
+        }
+        let nodes = choose(&mut document, args)?;
+        let names: Vec<&str> = nodes.iter().map(String::as_str).collect();
+        let problems = check(&document, catalog(), Target::Nodes(&names));
+        if !problems.is_empty() {
+            let lines = problems.iter().map(|problem| format!("{}: {problem}", args.graph.display()));
+            return Err(Lines(lines.collect()).into());
+        }
+        let outputs = nodes.into_iter().map(|node| {
+            let path = match &args.output {
+                Some(path) => path.clone(),
+                None => document.base.join(saved_path(&document.nodes[&node])),
+            };
+            Output { node, path }
+        });
+        let outputs: Vec<Output> = outputs.collect();
+        check_outputs(&outputs, args.frames.is_some())?;
+        if args.frames.is_some() && !document.nodes.values().any(|node| node.type_id == LOAD) {
+            anyhow::bail!("--frames: the graph has no load_vdb whose frame could change; leave it out");
+        }
+        Ok(Self { document, outputs })
+    }
+
+    /// The graph of one picture, which is written to `outputs`: at this frame, if there are frames.
+    ///
+    /// # Errors
+    /// When a path is not UTF-8 or the working directory cannot be read.
+    pub fn document_of(&self, frame: Option<i64>, outputs: &[Output]) -> anyhow::Result<Document> {
+        let mut document = self.document.clone();
+        if let Some(frame) = frame {
+            for node in document.nodes.values_mut().filter(|node| node.type_id == LOAD) {
+                node.params.insert("frame".to_owned(), frame.into());
+            }
+        }
+        for output in outputs {
+            // Relative paths in a document start at the graph.
+            let path = std::path::absolute(&output.path)
+                .map_err(|error| anyhow::anyhow!("the working directory cannot be read: {error}"))?;
+            let text = path.to_str().ok_or_else(|| {
+                anyhow::anyhow!("{}: the path is not UTF-8; write to another", path.display())
+            })?;
+            document.nodes[&output.node].params.insert("path".to_owned(), text.into());
+        }
+        Ok(document)
+    }
+
+    /// The outputs of a frame.
+    pub fn outputs_of(&self, frame: i64) -> Vec<Output> {
+        let at_frame =
+            |output: &Output| Output { node: output.node.clone(), path: frames::file(&output.path, frame) };
+        self.outputs.iter().map(at_frame).collect()
+    }
+}
+
+/// A graph file that is none; several problems of its form are a line each.
+fn unreadable(path: &Path, error: DocumentError) -> anyhow::Error {
+    if matches!(error, DocumentError::Read { .. }) {
+        return error.into();
+    }
+    let lines = error.to_string();
+    Lines(lines.lines().map(|line| format!("{}: {line}", path.display())).collect()).into()
+}
+
+/// `--set`: all that is wrong, at once.
+fn set_params(document: &mut Document, settings: &[String]) -> anyhow::Result<()> {
+    let mut wrong = Vec::new();
+    for setting in settings {
+        match setting.split_once('=') {
+            Some((name, value)) => {
+                if let Err(error) = document.set(catalog(), name.trim(), value) {
+                    wrong.push(error.to_string());
+                }
+            }
+            None => wrong.push(format!("--set '{setting}' has no value; write node.parameter=value")),
+        }
+    }
+    if wrong.is_empty() { Ok(()) } else { Err(super::output::errors(&wrong).into()) }
+}
+
+/// `--size`, for every camera.
+fn set_size(document: &mut Document, width: u32, height: u32) -> anyhow::Result<()> {
+    let cameras = document.nodes.iter().filter(|(_, node)| node.type_id == CAMERA);
+    let cameras: Vec<String> = cameras.map(|(name, _)| name.clone()).collect();
+    if cameras.is_empty() {
+        anyhow::bail!("--size: the graph has no camera whose size could change; leave it out");
+    }
+    for camera in cameras {
+        for (side, pixels) in [("width", width), ("height", height)] {
+            document.set(catalog(), &format!("{camera}.{side}"), &pixels.to_string())?;
+        }
+    }
+    Ok(())
+}
+
+/// The save_image nodes that are to run; one is added where another node is to be looked at.
+fn choose(document: &mut Document, args: &Args) -> anyhow::Result<Vec<String>> {
+    if let Some(name) = &args.node {
+        let Some(node) = document.nodes.get(name) else {
+            let names: Vec<&str> = document.nodes.keys().map(String::as_str).collect();
+            let near = did_you_mean(name, names.iter().copied());
+            anyhow::bail!("--node '{name}': there is no such node;{near} nodes are {}", names.join(", "));
+        };
+        if node.type_id == SAVE {
+            return Ok(vec![name.clone()]);
+        }
+        if image_port(node).is_none() {
+            let givers = list(document, |node| image_port(node).is_some());
+            anyhow::bail!("--node '{name}' gives no image; those that do are {givers}");
+        }
+        if args.output.is_none() {
+            anyhow::bail!("--node '{name}' is no save_image; say where to write with -o picture.exr");
+        }
+        return Ok(vec![add_save(document, &name.clone())]);
+    }
+    let saves: Vec<String> = document
+        .nodes
+        .iter()
+        .filter(|(_, node)| node.type_id == SAVE)
+        .map(|(name, _)| name.clone())
+        .collect();
+    match (saves.len(), &args.output) {
+        (0, None) => {
+            anyhow::bail!("the graph has no save_image node; say where to write with -o picture.exr")
+        }
+        (0, Some(_)) => Ok(vec![add_save(document, &last_image(document)?)]),
+        (1, _) | (_, None) => Ok(saves),
+        _ => anyhow::bail!(
+            "the graph has several save_image nodes ({}); say with --node which of them -o is for",
+            saves.join(", ")
+        ),
+    }
+}
+
+/// The one node that gives an image which nobody reads.
+fn last_image(document: &Document) -> anyhow::Result<String> {
+    let is_read = |name: &String| document.wires.iter().any(|wire| wire.from.node == *name);
+    let mut last = document.nodes.iter().filter(|(name, node)| image_port(node).is_some() && !is_read(name));
+    match (last.next(), last.next()) {
+        (Some((name, _)), None) => Ok(name.clone()),
+        (None, _) => anyhow::bail!("no node of the graph gives an image; add a raymarch"),
+        _ => {
+            let givers = list(document, |node| image_port(node).is_some());
+            anyhow::bail!("several nodes give an image ({givers}); say with --node which to write")
+        }
+    }
+}
+
+/// Adds a save_image that reads `giver`, and gives its name.
+fn add_save(document: &mut Document, giver: &str) -> String {
+    let mut name = "output".to_owned();
+    while document.nodes.contains_key(&name) {
+        name.push('_');
+    }
+    let port = image_port(&document.nodes[giver]).unwrap_or_default();
+    let end = |node: &str, port: &str| End { node: node.to_owned(), port: port.to_owned() };
+    document.wires.push(Wire { from: end(giver, port), to: end(&name, "image") });
+    document.nodes.insert(name.clone(), Node { type_id: SAVE.to_owned(), params: Default::default() });
+    name
+}
+
+/// The first output of a node that is an image.
+fn image_port(node: &Node) -> Option<&'static str> {
+    let spec = catalog().find(&node.type_id)?;
+    spec.outputs.iter().find(|port| port.kind == PortType::Image).map(|port| port.name)
+}
+
+fn list(document: &Document, is_meant: impl Fn(&Node) -> bool) -> String {
+    let names = document.nodes.iter().filter(|(_, node)| is_meant(node));
+    let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
+
+/// The path of a save_image whose parameters have been checked.
+fn saved_path(node: &Node) -> String {
+    let spec = catalog().find(SAVE).and_then(|spec| spec.param("path"));
+    let default = spec.and_then(|spec| spec.default_json());
+    let path = node.params.get("path").cloned().or(default);
+    path.as_ref().and_then(Json::as_str).unwrap_or_default().to_owned()
+}
+
+/// Refuses, before anything is rendered, what could not be written afterwards.
+fn check_outputs(outputs: &[Output], has_frames: bool) -> anyhow::Result<()> {
+    for (idx, output) in outputs.iter().enumerate() {
+        Format::of(&output.path)?;
+        if !has_frames && frames::is_pattern(&output.path) {
+            anyhow::bail!(
+                "{}: # stands for a frame's number; add --frames 1-100, or write a name without #",
+                output.path.display()
+            );
+        }
+        if let Some(other) = outputs[..idx].iter().find(|other| other.path == output.path) {
+            anyhow::bail!(
+                "'{}' and '{}' both write {}; give them two paths, or choose one with --node",
+                other.node,
+                output.node,
+                output.path.display()
+            );
+        }
+        atomic::check(&output.path)?;
+    }
+    Ok(())
+}
