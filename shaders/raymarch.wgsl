@@ -161,13 +161,19 @@ fn march(direction: vec3f) -> Layers {
                 let beam = beams[first + m];
                 var travel = beam.place.xyz;
                 var power = spectrum(beam.power);
+                var reach = 1e30;
                 if beam.place.w > 0.0 {
                     let line = p - beam.place.xyz;
                     let r2 = max(dot(line, line), 1e-6);
                     travel = line * inverseSqrt(r2);
+                    reach = sqrt(r2);
                     power = power / (r2 * params.cell_m * params.cell_m);
                 }
-                let tau_n = depths[m];
+                var tau_n = depths[m];
+                if params.shape.kind != VOXELS {
+                    let way = ray_shape(params.shape, p, -travel);
+                    tau_n = s * max(0.0, min(way.y, reach) - way.x) * params.cell_m;
+                }
                 let mu = clamp(-dot(travel, direction), -1.0, 1.0);
                 let reduced = exp(-k * tau_n);
                 let unscattered = min(exp(k * tau_c - (tau_n + tau_c)), reduced);

@@ -18,17 +18,26 @@ struct SourceParams {
 @group(1) @binding(2) var<storage, read> beams: array<Beam>;
 @group(2) @binding(0) var sources: texture_storage_3d<rgba32float, write>;
 
-// Mean of exp(-k tau) over the four edges along an axis; corners numbered x + 2y + 4z.
-fn edge_mean(t: array<f32, 8>, k: f32, axis: u32) -> f32 {
+// -ln of the mean of exp(-t) for t from a to b.
+fn depth_between(a: f32, b: f32) -> f32 {
+    return min(a, b) - log(mean_transmittance(abs(b - a)));
+}
+
+// Mean of exp(-k tau) over a cell from its corners, numbered x + 2y + 4z: along `axis` first, then along
+// the other two. Exact where tau is linear, so what a beam gives to cells is what it loses.
+fn cell_mean(t: array<f32, 8>, k: f32, axis: u32) -> f32 {
     var corners = t;
-    let bit = 1u << axis;
-    var sum = 0.0;
-    for (var n = 0u; n < 8u; n += 1u) {
-        if (n & bit) == 0u {
-            sum += mean_exp(k * corners[n], k * corners[n | bit]);
-        }
+    let first = 1u << axis;
+    let second = 1u << ((axis + 1u) % 3u);
+    let third = 1u << ((axis + 2u) % 3u);
+    var faces: array<f32, 2>;
+    for (var n = 0u; n < 2u; n += 1u) {
+        let at = n * third;
+        let near = depth_between(k * corners[at], k * corners[at | first]);
+        let far = depth_between(k * corners[at | second], k * corners[at | second | first]);
+        faces[n] = depth_between(near, far);
     }
-    return 0.25 * sum;
+    return exp(-depth_between(faces[0], faces[1]));
 }
 
 fn largest_axis(v: vec3f) -> u32 {
@@ -91,7 +100,7 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
                     axis = largest_axis(0.5 * vec3f(level.dims) - beam.place.xyz);
                     spreading = mean_inverse_square(vec3f(cell), beam.place.xyz, level.cell_m);
                 }
-                let mean = beam.power[c] * spreading * edge_mean(one, channel.k, axis);
+                let mean = beam.power[c] * spreading * cell_mean(one, channel.k, axis);
                 total += mean * vec4f(1.0, level.g_star * beam.power.w * direction);
             }
         }

@@ -120,19 +120,15 @@ fn shear(medium: &Medium, beam: &Beam) -> Shear {
     }
 }
 
-/// Samples of the extinction that a walk would take for these beams: from every corner half of the way
-/// through the medium along the beam.
-pub(super) fn walk_samples(medium: &Medium, beams: &[Beam]) -> f64 {
+/// Samples that a walk takes from a corner to the light: half of the way through the medium, the mean over
+/// the beams.
+pub(super) fn samples_of_a_walk(medium: &Medium, beams: &[Beam]) -> f64 {
     let occupied = DVec3::from_array(medium.lattice.occupied.map(|n| n as f64));
-    let corners: f64 = medium.lattice.dims.iter().map(|&n| (n + 1) as f64).product();
-    beams
-        .iter()
-        .map(|beam| match beam.place {
-            Place::Parallel(direction) => {
-                let through = (occupied / direction.abs().max(DVec3::splat(1e-9))).min_element();
-                0.5 * corners * through
-            }
-            Place::Point(_) => 0.0,
-        })
-        .sum()
+    let ways = beams.iter().filter_map(|beam| match beam.place {
+        Place::Parallel(direction) => {
+            Some((occupied / direction.abs().max(DVec3::splat(1e-9))).min_element())
+        }
+        Place::Point(_) => None,
+    });
+    0.5 * ways.sum::<f64>() / beams.len().max(1) as f64
 }
