@@ -16,6 +16,8 @@ mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
 mod medium;
+#[cfg(test)]
+mod oracle_scene;
 mod point_light;
 mod principal_propagation;
 mod raymarch;

@@ -15,6 +15,8 @@ use crate::optics::directions::LineSet;
 use crate::wire::{Beams, Channels, Medium};
 
 mod level;
+#[cfg(test)]
+pub(super) mod oracle;
 mod solver;
 mod sources;
 
