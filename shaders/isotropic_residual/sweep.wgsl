@@ -79,7 +79,8 @@ fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
         p = select(p, p + n, next < vec3i(0));
         p = select(p, p - n, next >= n);
         let side = any((p != next) & (along == vec3i(0)));
-        if side {
+        // A line that leaves through an edge after the last cell is ended below, and none begins there.
+        if side && step + 1 < n_steps {
             leak += radiance;
             radiance = inflow;
         }
