@@ -12,6 +12,8 @@ use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Value};
 
 mod camera;
 mod environment;
+#[cfg(test)]
+mod extremes;
 mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
@@ -25,6 +27,8 @@ mod save_image;
 mod shape;
 mod spherical_propagation;
 mod sun;
+#[cfg(test)]
+mod testing;
 mod tone_map;
 mod transform;
 mod walk;

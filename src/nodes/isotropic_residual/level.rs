@@ -182,14 +182,19 @@ pub(super) struct Scratch {
 }
 
 /// The largest batch; beyond this a larger one saves nothing.
-const BATCH_BYTES: u64 = 1 << 30;
+pub(super) const BATCH_BYTES: u64 = 1 << 30;
 
 impl Scratch {
-    /// For the finest level.
-    pub(super) fn new(gpu: &Gpu, problem: &Problem, dims: [usize; 3]) -> Result<Self, GpuError> {
+    /// For the finest level, with batches of at most `batch_bytes`, or of one direction.
+    pub(super) fn new(
+        gpu: &Gpu,
+        problem: &Problem,
+        dims: [usize; 3],
+        batch_bytes: u64,
+    ) -> Result<Self, GpuError> {
         let cells_bytes = 4 * dims.iter().product::<usize>() as u64;
         let n_pairs = problem.n_channels * problem.directions.len();
-        let room = (gpu.max_binding_bytes().min(BATCH_BYTES) / cells_bytes) as usize;
+        let room = (gpu.max_binding_bytes().min(batch_bytes) / cells_bytes) as usize;
         let pairs_per_batch = room.clamp(1, n_pairs);
         let one_batch = pairs_per_batch >= n_pairs;
         Ok(Self {

@@ -22,7 +22,7 @@ use crate::nodes::oracle_scene::{BeamLight, OracleMedium};
 use crate::optics::directions::LineSet;
 use crate::volume::field::Field;
 
-pub use cascade::{Solution, solve};
+pub use cascade::solve;
 pub use level::Level;
 pub use sweep::Scheme;
 

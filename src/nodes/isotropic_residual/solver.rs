@@ -22,7 +22,7 @@ mirror! {
 /// Grids are halved while an axis is longer than this.
 const COARSEST: usize = 8;
 
-/// Solves for the residual.
+/// Solves for the residual; sweeps hold the radiances of at most `batch_bytes` of directions at once.
 pub(super) fn solve(
     run: &Run,
     medium: &Medium,
@@ -30,9 +30,11 @@ pub(super) fn solve(
     problem: &Problem,
     effort: Effort,
     channels: Channels,
+    batch_bytes: u64,
 ) -> Result<Residual, NodeError> {
     let gpu = run.gpu;
-    let levels = levels(run, medium, sources, problem)?;
+    let scratch = Scratch::new(gpu, problem, medium.lattice.dims, batch_bytes)?;
+    let levels = levels(run, medium, sources, problem, &scratch)?;
     for idx in (0..levels.len()).rev() {
         let level = &levels[idx];
         if let Some(coarser) = levels.get(idx + 1) {
@@ -50,14 +52,19 @@ pub(super) fn solve(
 }
 
 /// All grids, finest first.
-fn levels(run: &Run, medium: &Medium, sources: Sources, problem: &Problem) -> Result<Vec<Level>, NodeError> {
+fn levels(
+    run: &Run,
+    medium: &Medium,
+    sources: Sources,
+    problem: &Problem,
+    scratch: &Scratch,
+) -> Result<Vec<Level>, NodeError> {
     let gpu = run.gpu;
-    let scratch = Scratch::new(gpu, problem, medium.lattice.dims)?;
     let mut cell_m = medium.lattice.cell_m;
     let mut fields = [Arc::clone(&medium.sigma_t), Arc::new(sources.field)];
     let mut levels = Vec::new();
     loop {
-        let level = Level::new(gpu, problem, &scratch, cell_m, fields.clone(), &sources.sums)?;
+        let level = Level::new(gpu, problem, scratch, cell_m, fields.clone(), &sources.sums)?;
         let dims = level.dims;
         levels.push(level);
         let longest = dims.into_iter().max().unwrap_or(0);

@@ -140,3 +140,6 @@ fn resample(run: &Run, dense: &Dense, density_scale: f64, lattice: &Lattice) -> 
     run.finish(recorder)?;
     Ok(sigma_t)
 }
+
+#[cfg(test)]
+mod tests;

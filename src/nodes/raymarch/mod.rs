@@ -255,3 +255,6 @@ impl Backdrop {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;
