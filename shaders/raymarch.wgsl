@@ -81,6 +81,8 @@ const OPAQUE: f32 = 1e-5;
 // The table of K: columns 255 sqrt(sin(theta/2)), rows 63 sqrt(x/60).
 const PEAK_SIZE: vec2f = vec2f(256.0, 64.0);
 const PEAK_X_MAX: f32 = 60.0;
+// Radius of the ball that has the volume of a cube, over the cube's edge.
+const BALL_PER_EDGE: f32 = 0.62;
 
 struct Layers {
     single: Spectrum,
@@ -131,6 +133,7 @@ fn march(direction: vec3f) -> Layers {
     let n_steps = ceil((span.y - span.x) / params.step);
     let dt = (span.y - span.x) / n_steps;
     let length_m = dt * params.cell_m;
+    let near2 = BALL_PER_EDGE * BALL_PER_EDGE * dt * dt;
     let tau_size = vec3f(textureDimensions(tau));
     let corners = params.dims + 1u;
     for (var n = 0.0; n < n_steps; n += 1.0) {
@@ -164,10 +167,12 @@ fn march(direction: vec3f) -> Layers {
                 var reach = 1e30;
                 if beam.place.w > 0.0 {
                     let line = p - beam.place.xyz;
-                    let r2 = max(dot(line, line), 1e-6);
-                    travel = line * inverseSqrt(r2);
+                    let r2 = dot(line, line);
+                    travel = line * inverseSqrt(max(r2, 1e-12));
                     reach = sqrt(r2);
-                    power = power / (r2 * params.cell_m * params.cell_m);
+                    // Within the ball that has the volume of a cube of a step the ball's mean, 3 / radius^2.
+                    let falloff = select(1.0 / max(r2, near2), 3.0 / near2, r2 < near2);
+                    power = power * (falloff / (params.cell_m * params.cell_m));
                 }
                 var tau_n = depths[m];
                 if params.shape.kind != VOXELS {

@@ -20,6 +20,8 @@ struct ToneParams {
 @group(1) @binding(0) var<storage, read> radiance: array<f32>;
 @group(2) @binding(0) var<storage, read_write> display: array<f32>;
 
+const F32_MAX: f32 = 3.4028234e38;
+
 fn hable(x: vec3f) -> vec3f {
     let a = params.hable[0].x;
     let b = params.hable[0].y;
@@ -45,7 +47,10 @@ fn tone_map(@builtin(global_invocation_id) id: vec3u) {
     if id.x >= params.width || idx >= params.n_pixels {
         return;
     }
-    let exposed = params.gain * vec3f(radiance[3u * idx], radiance[3u * idx + 1u], radiance[3u * idx + 2u]);
+    // No product may be infinite.
+    let most = F32_MAX / max(params.gain, 1.0);
+    let light = vec3f(radiance[3u * idx], radiance[3u * idx + 1u], radiance[3u * idx + 2u]);
+    let exposed = params.gain * clamp(light, vec3f(-most), vec3f(most));
     let cut = clamp(exposed, vec3f(0.0), vec3f(params.ends.y));
     var mapped = exposed;
     if params.curve == 1u {

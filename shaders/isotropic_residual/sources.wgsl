@@ -97,7 +97,7 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
                 if beam.place.w > 0.0 {
                     let line = vec3f(cell) - beam.place.xyz;
                     direction = line / max(length(line), 1e-6);
-                    axis = largest_axis(0.5 * vec3f(level.dims) - beam.place.xyz);
+                    axis = largest_axis(0.5 * vec3f(level.dims) - 0.5 - beam.place.xyz);
                     spreading = mean_inverse_square(vec3f(cell), beam.place.xyz, level.cell_m);
                 }
                 let mean = beam.power[c] * spreading * cell_mean(one, channel.k, axis);

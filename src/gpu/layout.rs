@@ -1,7 +1,7 @@
 //! The check that a Rust struct and its WGSL mirror have the same members at the same offsets.
 //!
 //! A struct that is sent to a shader is declared with [`mirror!`](crate::mirror), which keeps the
-//! list of its members; `tests/shaders.rs` compares that list with what naga reads from the WGSL.
+//! list of its members; the tests of each node compare that list with what naga reads from the WGSL.
 
 use super::{GpuError, Shader};
 

@@ -12,10 +12,14 @@ use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Value};
 
 mod camera;
 mod environment;
+#[cfg(test)]
+mod extremes;
 mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
 mod medium;
+#[cfg(test)]
+mod oracle_scene;
 mod point_light;
 mod principal_propagation;
 mod raymarch;
@@ -23,6 +27,8 @@ mod save_image;
 mod shape;
 mod spherical_propagation;
 mod sun;
+#[cfg(test)]
+mod testing;
 mod tone_map;
 mod transform;
 mod walk;

@@ -61,3 +61,6 @@ fn record(
     recorder.dispatch(&bound, atlas.corners);
     Ok(())
 }
+
+#[cfg(test)]
+mod tests;

@@ -176,8 +176,8 @@ mod tests {
 
     #[test]
     fn lookup_interpolates_the_series() {
-        // Bilinear on a grid of 63 × 255 steps in the square roots; the worst found over this grid
-        // is 0.3 % of the value, near the first rows.
+        // Bilinear on a grid of 63 × 255 steps in the square roots: the worst found here is 0.09 % of
+        // the value, and half as much again is allowed.
         for g in [0.3, 0.75, 0.9] {
             let table = peak_table(g);
             for x in [0.05, 0.7, 3.0, 11.0, 47.0] {
@@ -185,7 +185,7 @@ mod tests {
                     let expected = direct_series(x, mu, g);
                     let found = lookup(&table, x, mu);
                     assert!(
-                        (found - expected).abs() < 4e-3 * expected + 1e-5,
+                        (found - expected).abs() < 1.3e-3 * expected + 1e-6,
                         "g {g} x {x} mu {mu}: {found} against {expected}"
                     );
                 }

@@ -1,6 +1,8 @@
 //! Volumes: OpenVDB files, numbered sequences, procedural shapes, and the lattice that solvers use.
 
 pub mod dense;
+#[cfg(test)]
+pub mod field;
 pub mod grid;
 mod lattice;
 pub mod sequence;

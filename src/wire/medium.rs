@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::gpu::Texture;
+use crate::gpu::{Bind, Format, Gpu, GpuError, Texture};
 use crate::mirror;
 use crate::volume::Lattice;
 
@@ -50,6 +50,36 @@ mirror! {
         /// Extinction inside a closed form [1/m].
         sigma_t: f32,
     }
+}
+
+mirror! {
+    /// `OccupancyParams` of `shaders/occupancy.wgsl`.
+    pub struct OccupancyParams {
+        /// Blocks along x, y, z.
+        n_blocks: [u32; 3],
+        /// Unused.
+        pad: u32,
+    }
+}
+
+/// Edge of a block [cells]; `BLOCK` of `shaders/lib/block.wgsl`.
+const BLOCK: usize = 8;
+
+/// What each block of cells holds at most, so that rays pass empty ones in one step.
+///
+/// # Errors
+/// What the device reports.
+pub fn occupancy(gpu: &Gpu, sigma_t: &Texture) -> Result<Texture, GpuError> {
+    let n_blocks = sigma_t.dims().map(|n| (n as usize).div_ceil(BLOCK));
+    let blocks =
+        gpu.texture3("blocks of cells", n_blocks, Format::R32Float, "lower medium.max_resolution")?;
+    let params = OccupancyParams { n_blocks: n_blocks.map(|n| n as u32), pad: 0 };
+    let stage = gpu.stage("occupancy", &[])?;
+    let mut recorder = gpu.recorder("occupancy");
+    recorder
+        .dispatch(&stage.bind(gpu, &params, &[Bind::Texture(sigma_t)], &[Bind::Texture(&blocks)]), n_blocks);
+    recorder.finish()?;
+    Ok(blocks)
 }
 
 impl Medium {

@@ -12,5 +12,5 @@ mod residual;
 
 pub use beams::{Beam, BeamTexel, Beams, Place, TauAtlas};
 pub use channels::Channels;
-pub use medium::{Homogeneous, Medium, ShapeTexel};
+pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;

@@ -171,24 +171,25 @@ pub(super) struct Scratch {
 }
 
 /// The largest scratch; beyond this a larger one saves nothing.
-const BATCH_BYTES: u64 = 1 << 30;
+pub(super) const BATCH_BYTES: u64 = 1 << 30;
 /// Bytes of a packed lobe.
 const LOBE_BYTES: u64 = 16;
 
 impl Scratch {
-    /// For the finest level; `limit_bytes` is the largest binding.
+    /// For the finest level, with batches of at most `batch_bytes`, or of one direction.
     pub(super) fn new(
         gpu: &Gpu,
         problem: &Problem,
         dims: [usize; 3],
-        limit_bytes: u64,
+        batch_bytes: u64,
     ) -> Result<Self, GpuError> {
         let n_cells = dims.iter().product::<usize>() as u64;
         let n_directions = problem.directions.len();
         let n_pairs = problem.n_channels * n_directions;
-        let room = (limit_bytes.min(BATCH_BYTES) / (4 * n_cells)) as usize;
+        let room = (batch_bytes.min(gpu.max_binding_bytes()) / (4 * n_cells)) as usize;
         // All channels at once, or one after the other in as few batches as fit.
-        let at_once = room >= n_pairs && LOBE_BYTES * n_cells * problem.n_channels as u64 <= limit_bytes;
+        let at_once =
+            room >= n_pairs && LOBE_BYTES * n_cells * problem.n_channels as u64 <= gpu.max_binding_bytes();
         let (batch, channels_per_group) = if at_once {
             (n_pairs, problem.n_channels)
         } else {

@@ -15,6 +15,8 @@ use crate::optics::directions::LineSet;
 use crate::wire::{Beams, Channels, Medium};
 
 mod level;
+#[cfg(test)]
+pub(super) mod oracle;
 mod solver;
 mod sources;
 mod thick;
@@ -92,7 +94,10 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let channels = Channels::of(medium, &beams);
     let problem = level::Problem::new(medium, &channels, beams.ambient, effort(run)?.lines);
     let sources = sources::sources(run, medium, &beams, &channels, &problem)?;
-    let residual = solver::solve(run, medium, sources, &problem, effort(run)?, channels)?;
+    let residual = solver::solve(run, medium, sources, &problem, effort(run)?, channels, level::BATCH_BYTES)?;
     let bytes = residual.moments.bytes();
     Ok(vec![Value::new(PortType::Residual, bytes, residual)])
 }
+
+#[cfg(test)]
+mod tests;

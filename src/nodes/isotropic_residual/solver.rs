@@ -28,7 +28,7 @@ const SWEEPS_AT_ONCE: usize = 4;
 const CONVERGED: f64 = 1e-5;
 const MAX_ROUNDS: usize = 2000;
 
-/// Solves for the residual.
+/// Solves for the residual; sweeps hold the radiances of at most `batch_bytes` of directions at once.
 pub(super) fn solve(
     run: &Run,
     medium: &Medium,
@@ -36,8 +36,10 @@ pub(super) fn solve(
     problem: &Problem,
     effort: Effort,
     channels: Channels,
+    batch_bytes: u64,
 ) -> Result<Residual, NodeError> {
-    let levels = levels(run, medium, sources, problem)?;
+    let scratch = Scratch::new(run.gpu, problem, medium.lattice.dims, batch_bytes)?;
+    let levels = levels(run, medium, sources, problem, &scratch)?;
     for idx in (0..levels.len()).rev() {
         if let Some(coarser) = levels.get(idx + 1) {
             prolong(run, coarser, &levels[idx])?;
@@ -58,12 +60,17 @@ pub(super) fn solve(
 }
 
 /// All grids, finest first.
-fn levels(run: &Run, medium: &Medium, sources: Sources, problem: &Problem) -> Result<Vec<Level>, NodeError> {
+fn levels(
+    run: &Run,
+    medium: &Medium,
+    sources: Sources,
+    problem: &Problem,
+    scratch: &Scratch,
+) -> Result<Vec<Level>, NodeError> {
     let gpu = run.gpu;
-    let scratch = Scratch::new(gpu, problem, medium.lattice.dims, gpu.max_binding_bytes())?;
     let mut cell_m = medium.lattice.cell_m;
     let fields = [&*medium.sigma_t, &sources.field];
-    let mut levels = vec![Level::new(gpu, problem, &scratch, cell_m, fields, &sources.sums)?];
+    let mut levels = vec![Level::new(gpu, problem, scratch, cell_m, fields, &sources.sums)?];
     let mut coarser: Option<[Texture; 2]> = None;
     loop {
         let dims = levels[levels.len() - 1].dims;
@@ -81,7 +88,7 @@ fn levels(run: &Run, medium: &Medium, sources: Sources, problem: &Problem) -> Re
             restrict(run, field, problem.layers(half), Format::Rgba32Float)?,
         ];
         cell_m *= 2.0;
-        levels.push(Level::new(gpu, problem, &scratch, cell_m, [&next[0], &next[1]], &sources.sums)?);
+        levels.push(Level::new(gpu, problem, scratch, cell_m, [&next[0], &next[1]], &sources.sums)?);
         coarser = Some(next);
     }
 }

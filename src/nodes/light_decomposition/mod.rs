@@ -62,3 +62,6 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let bytes = (light.ordinates.len() * size_of::<Ordinate>()) as u64;
     Ok(vec![Value::new(PortType::Ordinates, bytes, light)])
 }
+
+#[cfg(test)]
+mod tests;

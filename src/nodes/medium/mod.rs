@@ -9,7 +9,7 @@ use crate::gpu::{Bind, Format, Texture};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::mirror;
 use crate::volume::{Dense, Fineness, Lattice, Volume, uniform_scale};
-use crate::wire::{Homogeneous, Medium};
+use crate::wire::{Homogeneous, Medium, occupancy};
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 
@@ -65,14 +65,6 @@ mirror! {
     }
 }
 
-mirror! {
-    /// `OccupancyParams` of `shaders/occupancy.wgsl`.
-    pub(super) struct OccupancyParams {
-        n_blocks: [u32; 3],
-        pad: u32,
-    }
-}
-
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let volume: &Volume = run.inputs.one("volume");
     let dense = volume.grid(run.params.text("density")).map_err(NodeError::new)?;
@@ -99,29 +91,13 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium = Medium {
         homogeneous: homogeneous(volume, &lattice),
         lattice,
-        blocks: Arc::new(blocks(run, &sigma_t)?),
+        blocks: Arc::new(occupancy(run.gpu, &sigma_t)?),
         sigma_t: Arc::new(sigma_t),
         sigma_t_max,
         albedo: run.params.rgb("albedo"),
         g: run.params.f64("g"),
     };
     Ok(vec![Value::new(PortType::Medium, bytes, medium)])
-}
-
-/// Edge of a block [cells]; `BLOCK` of `shaders/lib/block.wgsl`.
-const BLOCK: usize = 8;
-
-/// What each block of cells holds at most, so that rays pass empty ones in one step.
-fn blocks(run: &Run, sigma_t: &Texture) -> Result<Texture, NodeError> {
-    let n_blocks = sigma_t.dims().map(|n| (n as usize).div_ceil(BLOCK));
-    let blocks = run.gpu.texture3("blocks of cells", n_blocks, Format::R32Float, REMEDY)?;
-    let params = OccupancyParams { n_blocks: n_blocks.map(|n| n as u32), pad: 0 };
-    let mut recorder = run.gpu.recorder("medium");
-    let stage = run.gpu.stage("occupancy", &[])?;
-    let bound = stage.bind(run.gpu, &params, &[Bind::Texture(sigma_t)], &[Bind::Texture(&blocks)]);
-    recorder.dispatch(&bound, n_blocks);
-    run.finish(recorder)?;
-    Ok(blocks)
 }
 
 /// The closed form of an evenly filled shape, where its axes are those of the lattice.
@@ -165,3 +141,6 @@ fn resample(run: &Run, dense: &Dense, density_scale: f64, lattice: &Lattice) -> 
     run.finish(recorder)?;
     Ok(sigma_t)
 }
+
+#[cfg(test)]
+mod tests;

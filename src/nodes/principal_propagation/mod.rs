@@ -5,6 +5,8 @@ use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType,
 use crate::light::Ordinates;
 use crate::wire::{Beam, Beams, Medium, Place};
 
+#[cfg(test)]
+pub(super) mod oracle;
 mod scan;
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };

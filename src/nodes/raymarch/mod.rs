@@ -18,6 +18,8 @@ use crate::optics::peak;
 use crate::wire::{Beams, Channels, Medium, Residual, ShapeTexel};
 
 mod layers;
+#[cfg(test)]
+pub(super) mod oracle;
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 
@@ -254,3 +256,6 @@ impl Backdrop {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -5,6 +5,9 @@ use crate::graph::{Category, NodeError, NodeSpec, PortSpec, PortType, Value};
 use crate::light::Light;
 use crate::wire::{Beam, Beams, Medium, Place};
 
+#[cfg(test)]
+pub(super) mod oracle;
+
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 
 static SPEC: NodeSpec = NodeSpec {

@@ -80,3 +80,6 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let bytes = image.layers.values().map(|layer| size_of_val(layer.data.as_slice()) as u64).sum();
     Ok(vec![Value::new(PortType::Image, bytes, image)])
 }
+
+#[cfg(test)]
+mod tests;

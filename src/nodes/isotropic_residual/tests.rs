@@ -1,0 +1,314 @@
+use glam::DVec3;
+use serde_json::{Value as Json, json};
+
+use super::level::{BalanceParams, BatchParams, ChannelTexel, DirectionTexel, LevelParams, Problem};
+use super::oracle::{Level, Options, Quality, Scheme, solve};
+use super::sources::SourceParams;
+use super::{effort, oracle, solver, sources};
+use crate::gpu::Gpu;
+use crate::graph::Value;
+use crate::nodes::principal_propagation::oracle::mean_irradiance;
+use crate::nodes::spherical_propagation::oracle::mean_irradiance_point;
+use crate::nodes::testing::{
+    Filling, Scene, assert_close, assert_layout, flat, gpu, largest, layers, oracle_light, output, point,
+    states, sun, taus, with_run,
+};
+use crate::optics::directions::LineSet;
+use crate::volume::field::Field;
+use crate::wire::{Beam, Beams, Channels, Medium, Place, Residual, TauAtlas};
+
+/// The oracle's sources of one channel, from the optical depths that the GPU stored.
+fn oracle_sources(scene: &Scene, channel: usize, beams: &Beams, taus: &[Field<f64>]) -> oracle::Sources {
+    let medium = scene.oracle(channel);
+    let mut sources = oracle::Sources::new(scene.sigma_t.dims, beams.ambient[channel]);
+    let k = medium.scaled().k;
+    for (beam, tau) in beams.beams.iter().zip(taus) {
+        let mean = match beam.place {
+            Place::Parallel(direction) => mean_irradiance(tau, k, direction),
+            Place::Point(position) => mean_irradiance_point(tau, k, medium.h, position),
+        };
+        sources.add_beam(&medium, &oracle_light(beam, channel), &mean);
+    }
+    sources
+}
+
+/// Q0 and Q1 as the node makes them, a field a channel.
+fn gpu_sources(gpu: &Gpu, medium: &Value, beams: &Value) -> Vec<Field<glam::DVec4>> {
+    let inputs = [("medium", medium), ("beams", beams)];
+    with_run(gpu, "isotropic_residual", json!({}), &inputs, |run| {
+        let (medium, beams): (&Medium, &Beams) = (medium.get(), beams.get());
+        let channels = Channels::of(medium, beams);
+        let problem = Problem::new(medium, &channels, beams.ambient, LineSet::Lines14);
+        let sources = sources::sources(run, medium, beams, &channels, &problem).unwrap();
+        layers(gpu, &sources.field, channels.count)
+    })
+}
+
+fn residual(gpu: &Gpu, params: Json, medium: &Value, beams: &Value) -> Value {
+    output(gpu, "isotropic_residual", params, &[("medium", medium), ("beams", beams)])
+}
+
+/// A bright, a dim and a colored sun, of different spreads.
+fn suns(is_colored: bool) -> Vec<Beam> {
+    let mut suns = vec![
+        sun(DVec3::new(0.3, -0.2, 0.9), 3.0),
+        sun(DVec3::new(-0.8, 0.5, 0.1), 0.5),
+        Beam { a0: 0.8, ..sun(DVec3::new(0.1, 1.0, 0.3), 1.0) },
+    ];
+    if is_colored {
+        suns[0].power = [3.0, 2.0, 1.0];
+        suns[2].power = [0.2, 0.5, 1.5];
+    }
+    suns
+}
+
+#[test]
+fn sources_of_suns_are_the_oracles() {
+    let Some(gpu) = gpu() else { return };
+    for (g, albedo) in [(-0.9, [0.3; 3]), (0.0, [1.0; 3]), (0.5, [0.9, 0.5, 0.99]), (0.95, [0.99; 3])] {
+        for filling in [Filling::Random, Filling::Binary] {
+            let scene = Scene { g, albedo, ..Scene::new([9, 6, 5], filling, 8.0) };
+            let medium = scene.medium(gpu);
+            let beams = scene.propagate(gpu, &medium, &suns(albedo[0] != albedo[1]), [0.0; 3]);
+            let taus = taus(gpu, beams.get());
+            for (channel, found) in gpu_sources(gpu, &medium, &beams).iter().enumerate() {
+                let expected = oracle_sources(&scene, channel, beams.get(), &taus);
+                let q0: Vec<f64> = found.data.iter().map(|q| q.x).collect();
+                let what = format!("g {g} {filling:?} channel {channel}");
+                // e^-x is 3 + 2x ulps off, x under 20; the other steps are a dozen roundings; differences
+                // of tau are divided by 0.1 at least: 1e-6.
+                let top = largest(&expected.q0.data);
+                assert_close(&what, &q0, &expected.q0.data, 1e-5, 1e-12 * top);
+                let q1: Vec<f64> = found.data.iter().flat_map(|q| [q.y, q.z, q.w]).collect();
+                let expected_q1: Vec<f64> = expected.q1.data.iter().flat_map(|q| q.to_array()).collect();
+                // Components of several beams may cancel, so their error is that of the largest.
+                assert_close(&what, &q1, &expected_q1, 1e-5, 1e-5 * largest(&expected_q1));
+            }
+        }
+    }
+}
+
+#[test]
+fn sources_of_point_lights_are_the_oracles() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene::new([9, 8, 7], Filling::Random, 3.0);
+    let medium = scene.medium(gpu);
+    // Outside; inside beside a center, on a corner and anywhere. The mean of r^-2 over a cell nearer than its
+    // edge is exact in the oracle and a sum of 8^3 points in the shader: 2 % off where the light is inside,
+    // 4.4 % where it sits on the corner of eight sub-cells, whose means their middles do not see.
+    for (position, near) in [
+        (DVec3::new(-9.0, 4.0, 3.0), 1e-5),
+        (DVec3::new(4.02, 3.03, 2.99), 0.02),
+        (DVec3::new(4.5, 3.5, 2.5), 0.05),
+        (DVec3::new(4.3, 3.1, 2.7), 0.02),
+    ] {
+        let beams = scene.propagate(gpu, &medium, &[point(position, 2.0)], [0.0; 3]);
+        let taus = taus(gpu, beams.get());
+        let expected = oracle_sources(&scene, 0, beams.get(), &taus);
+        let found = gpu_sources(gpu, &medium, &beams).remove(0);
+        for (idx, (found, expected)) in found.data.iter().zip(&expected.q0.data).enumerate() {
+            let cell = DVec3::from_array(scene.sigma_t.index_of(idx).map(|i| i as f64));
+            let relative = if (cell - position).length() < 1.0 { near } else { 1e-5 };
+            let what = format!("light {position}, cell {cell}");
+            assert_close(&what, &[found.x], &[*expected], relative, 1e-12);
+        }
+    }
+}
+
+/// Compares every channel of a residual with the oracle's, in units of the largest phi.
+fn assert_solved(
+    gpu: &Gpu,
+    what: &str,
+    scene: &Scene,
+    (lights, ambient): (&[Beam], [f64; 3]),
+    (quality, lines): (Quality, LineSet),
+) {
+    let name = match quality {
+        Quality::Draft => "draft",
+        Quality::Fast => "fast",
+        _ => "default",
+    };
+    let medium = scene.medium(gpu);
+    let beams = scene.propagate(gpu, &medium, lights, ambient);
+    let taus = taus(gpu, beams.get());
+    let params = json!({ "quality": name, "directions": lines.count() });
+    let found = residual(gpu, params, &medium, &beams);
+    let channels = found.get::<Residual>().channels;
+    for (channel, found) in states(gpu, &found).iter().enumerate() {
+        let level = Level::new(&scene.oracle(channel), oracle_sources(scene, channel, beams.get(), &taus));
+        let solved = solve(level, Options { quality, lines, scheme: Scheme::Diamond });
+        let expected: Vec<f64> = flat(&solved.state).iter().map(|x| x / channels.color[channel]).collect();
+        // Lobes are stored in steps of 1e-6 of phi; sources are 1e-5 off at worst, where they are weakest;
+        // a line of up to 32 cells and 20 sweeps add 1e-7 a step, most of which the balance takes back.
+        let what = format!("{what} {name} {lines:?} channel {channel}");
+        assert_close(&what, &flat(found), &expected, 1e-5, 1e-5 * largest(&expected));
+    }
+}
+
+#[test]
+fn residuals_are_the_oracles_for_every_g_and_albedo() {
+    let Some(gpu) = gpu() else { return };
+    for g in [-0.9, 0.0, 0.5, 0.9] {
+        for albedo in [0.0, 0.5, 0.99, 1.0] {
+            let scene = Scene { g, albedo: [albedo; 3], ..Scene::new([10, 6, 8], Filling::Random, 6.0) };
+            let what = format!("g {g} albedo {albedo}");
+            let light = (&suns(false)[..], [0.2; 3]);
+            assert_solved(gpu, &what, &scene, light, (Quality::Fast, LineSet::Lines14));
+        }
+    }
+}
+
+#[test]
+fn residuals_are_the_oracles_for_every_set_of_lines() {
+    let Some(gpu) = gpu() else { return };
+    for lines in LineSet::ALL {
+        for (quality, dims) in [
+            (Quality::Draft, [16, 8, 32]),
+            (Quality::Fast, [5, 3, 2]),
+            (Quality::Default, [8, 16, 4]),
+            (Quality::Default, [1, 1, 1]),
+        ] {
+            let mut scene = Scene::new(dims, Filling::Binary, 5.0);
+            // Without a border of void: the sweeps need none.
+            scene.sigma_t = Field::from_fn(dims, |[x, y, z]| ((3 * x + 5 * y + 7 * z) % 4) as f64);
+            let light = (&suns(false)[..1], [0.4; 3]);
+            assert_solved(gpu, &format!("{dims:?}"), &scene, light, (quality, lines));
+        }
+    }
+}
+
+#[test]
+fn residuals_of_three_channels_are_the_oracles() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { albedo: [1.0, 0.5, 0.9], ..Scene::new([16, 8, 32], Filling::Random, 4.0) };
+    let colored = suns(true);
+    for (lights, ambient) in [(&colored[..], [0.1, 0.0, 0.3]), (&[], [0.2, 0.4, 0.1])] {
+        for quality in [Quality::Draft, Quality::Default] {
+            let lines = quality.options().lines;
+            assert_solved(gpu, "three channels", &scene, (lights, ambient), (quality, lines));
+        }
+    }
+    // A grey medium in light of one color is one channel.
+    let grey = Scene { albedo: [0.9; 3], ..scene };
+    let medium = grey.medium(gpu);
+    let red = Beam { power: [2.0, 1.0, 0.5], ..colored[0] };
+    let beams = grey.propagate(gpu, &medium, &[red], [0.0; 3]);
+    let found = residual(gpu, json!({}), &medium, &beams);
+    assert_eq!(found.get::<Residual>().channels, Channels { count: 1, color: [1.0, 0.5, 0.25] });
+}
+
+#[test]
+fn point_lights_light_the_residual() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene::new([8, 8, 16], Filling::Random, 3.0);
+    let lights = [point(DVec3::new(20.0, 4.0, -3.0), 50.0), point(DVec3::new(3.0, -9.0, 8.0), 20.0)];
+    let default = (Quality::Default, LineSet::Lines14);
+    assert_solved(gpu, "points", &scene, (&lights, [0.0; 3]), default);
+}
+
+#[test]
+fn power_out_is_power_in() {
+    // All from what can be read back. In a sweep k sigma_t phi h^3 over the cells and what leaves make up
+    // what the cells gave, Q0 + sigma_s* phi_before, and what came in; the factor is on top.
+    let Some(gpu) = gpu() else { return };
+    for (g, albedo) in [(-0.9, 0.5), (0.0, 0.99), (0.5, 1.0), (0.9, 0.0)] {
+        let scene = Scene { g, albedo: [albedo; 3], ..Scene::new([16, 8, 12], Filling::Random, 5.0) };
+        let medium = scene.medium(gpu);
+        let beams = scene.propagate(gpu, &medium, &suns(false), [0.3; 3]);
+        let swept = |n: usize| residual(gpu, json!({ "sweeps": n }), &medium, &beams);
+        let (before, after) = (swept(3), swept(4));
+        let factor = after.get::<Residual>().balance[0];
+        let (before, after) = (states(gpu, &before).remove(0), states(gpu, &after).remove(0));
+        let scaled = scene.oracle(0).scaled();
+        let sources = gpu_sources(gpu, &medium, &beams).remove(0);
+        let level =
+            Level::new(&scene.oracle(0), oracle_sources(&scene, 0, beams.get(), &taus(gpu, beams.get())));
+        let entering = solve(level, Quality::Fast.options()).balance.entering;
+        let volume = scene.cell_m.powi(3);
+        let sum = |of: &dyn Fn(usize) -> f64| (0..sources.data.len()).map(of).sum::<f64>() * volume;
+        let incoming = sum(&|idx| sources.data[idx].x) + entering;
+        let scattered = sum(&|idx| scene.sigma_t.data[idx] * scaled.sigma_s_ratio * before.data[idx].x);
+        let taken = sum(&|idx| scene.sigma_t.data[idx] * scaled.k * after.data[idx].x / factor);
+        let absorbed = sum(&|idx| scene.sigma_t.data[idx] * scaled.sigma_a_ratio * after.data[idx].x);
+        let leaving = factor * (incoming + scattered - taken);
+        let balance = (absorbed + leaving) / incoming;
+        assert!((balance - 1.0).abs() < 1e-5, "g {g} albedo {albedo}: {balance}");
+        // And the sum is not trivially so: a factor of 1 would miss it.
+        assert!((factor - 1.0).abs() > 1e-5 || albedo == 0.0, "{factor}");
+    }
+}
+
+#[test]
+fn several_batches_give_what_one_gives() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { albedo: [0.9, 0.5, 0.99], ..Scene::new([8, 6, 12], Filling::Random, 4.0) };
+    let medium = scene.medium(gpu);
+    let beams = scene.propagate(gpu, &medium, &suns(true), [0.1; 3]);
+    let inputs = [("medium", &medium), ("beams", &beams)];
+    let solved = |batch_bytes| {
+        let result = with_run(gpu, "isotropic_residual", json!({}), &inputs, |run| {
+            let (medium, beams): (&Medium, &Beams) = (medium.get(), beams.get());
+            let channels = Channels::of(medium, beams);
+            let problem = Problem::new(medium, &channels, beams.ambient, LineSet::Lines14);
+            let sources = sources::sources(run, medium, beams, &channels, &problem).unwrap();
+            solver::solve(run, medium, sources, &problem, effort(run).unwrap(), channels, batch_bytes)
+        });
+        let moments = result.unwrap().moments;
+        layers(gpu, &moments, 3).iter().flat_map(flat).collect::<Vec<f64>>()
+    };
+    let cells_bytes = 4 * 8 * 6 * 12;
+    let one = solved(1 << 30);
+    // Batches of 1, 3, 5, 14 and 20 of the 42 pairs of channel and direction: the sums are the same, in
+    // the same order; |F| <= phi is enforced on partial sums too, which changes nothing while it holds.
+    for pairs in [1, 3, 5, 14, 20] {
+        assert_close(
+            &format!("{pairs} pairs"),
+            &solved(pairs * cells_bytes),
+            &one,
+            1e-5,
+            1e-5 * largest(&one),
+        );
+    }
+}
+
+#[test]
+fn no_light_is_no_residual() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene::new([6, 5, 4], Filling::Random, 4.0);
+    let medium = scene.medium(gpu);
+    let found = output(gpu, "isotropic_residual", json!({}), &[("medium", &medium)]);
+    assert!(states(gpu, &found)[0].data.iter().all(|state| *state == glam::DVec4::ZERO));
+    assert_eq!(found.get::<Residual>().balance, [1.0; 3]);
+}
+
+#[test]
+fn packs_of_beams_beyond_a_column_are_found() {
+    // An atlas has room for 2048 corners along z on every device: with 1300 of them one pack a column.
+    let Some(gpu) = gpu() else { return };
+    let n_z = gpu.max_texture_3d() as usize * 5 / 8;
+    let scene = Scene::new([3, 3, n_z], Filling::Random, 2.0);
+    let medium = scene.medium(gpu);
+    let five: Vec<Beam> = suns(false).into_iter().chain(suns(false)).take(5).collect();
+    let beams = scene.propagate(gpu, &medium, &five, [0.0; 3]);
+    let atlas: &TauAtlas = &beams.get::<Beams>().tau;
+    assert_eq!(atlas.packs_per_column, 1);
+    assert_eq!(atlas.origin(1), [0, 4, 0]);
+    let taus = taus(gpu, beams.get());
+    assert_eq!(taus[0], taus[3]);
+    assert_eq!(taus[1], taus[4]);
+    let expected = oracle_sources(&scene, 0, beams.get(), &taus);
+    let found: Vec<f64> = gpu_sources(gpu, &medium, &beams)[0].data.iter().map(|q| q.x).collect();
+    assert_close("q0", &found, &expected.q0.data, 1e-5, 1e-12);
+}
+
+#[test]
+fn layouts_are_those_of_the_shaders() {
+    assert_layout::<ChannelTexel>("isotropic_residual/sweep.wgsl", "Channel", &[]);
+    assert_layout::<LevelParams>("isotropic_residual/sweep.wgsl", "Level", &[]);
+    assert_layout::<DirectionTexel>("isotropic_residual/sweep.wgsl", "Direction", &[]);
+    assert_layout::<BatchParams>("isotropic_residual/sweep.wgsl", "Batch", &[]);
+    assert_layout::<BalanceParams>("isotropic_residual/balance.wgsl", "BalanceParams", &[]);
+    assert_layout::<SourceParams>("isotropic_residual/sources.wgsl", "SourceParams", &[]);
+    let format = [("format", "r32float")];
+    assert_layout::<solver::RestrictParams>("isotropic_residual/restrict.wgsl", "RestrictParams", &format);
+}

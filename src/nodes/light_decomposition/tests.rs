@@ -1,0 +1,62 @@
+use std::sync::Arc;
+
+use glam::DVec3;
+use serde_json::json;
+
+use crate::graph::{PortType, Value};
+use crate::light::environment::{Environment, Map};
+use crate::light::{Light, Ordinates};
+use crate::nodes::testing::{gpu, output, run};
+
+fn sun(angular_diameter_deg: f64) -> Value {
+    let direction = DVec3::new(0.6, 0.0, -0.8);
+    let sun = Light::Sun { direction, irradiance: [3.0, 2.0, 1.0], angular_diameter_deg };
+    Value::new(PortType::Light, 0, sun)
+}
+
+#[test]
+fn suns_pass_with_the_spread_of_their_disks() {
+    let Some(gpu) = gpu() else { return };
+    let suns = [sun(0.0), sun(60.0), sun(180.0)];
+    let inputs: Vec<_> = suns.iter().map(|sun| ("lights", sun)).collect();
+    let light = output(gpu, "light_decomposition", json!({}), &inputs);
+    let light: &Ordinates = light.get();
+    assert_eq!(light.ambient, [0.0; 3]);
+    // The mean cosine of a cap of half angle t is (1 + cos t)/2; a hemisphere's is a half.
+    let caps = [1.0, 0.5 * (1.0 + 0.75f64.sqrt()), 0.5];
+    assert_eq!(light.ordinates.len(), 3);
+    for (ordinate, a0) in light.ordinates.iter().zip(caps) {
+        assert!((ordinate.a0 - a0).abs() < 1e-15, "{ordinate:?} {a0}");
+        assert_eq!(ordinate.direction, DVec3::new(0.6, 0.0, -0.8));
+        assert_eq!(ordinate.irradiance, [3.0, 2.0, 1.0]);
+    }
+}
+
+#[test]
+fn point_lights_are_sent_elsewhere() {
+    let Some(gpu) = gpu() else { return };
+    let light = Light::Point { position: DVec3::ZERO, intensity: [1.0; 3] };
+    let light = Value::new(PortType::Light, 0, light);
+    let error = run(gpu, "light_decomposition", json!({}), &[("lights", &light)]).unwrap_err();
+    assert!(error.to_string().contains("wire it to spherical_propagation.lights"), "{error}");
+}
+
+#[test]
+fn constants_are_ambient_and_maps_keep_their_power() {
+    let Some(gpu) = gpu() else { return };
+    let constant = Value::new(PortType::Environment, 0, Environment::Constant([0.1, 0.2, 0.3]));
+    let light = output(gpu, "light_decomposition", json!({}), &[("environment", &constant)]);
+    assert_eq!(*light.get::<Ordinates>(), Ordinates { ambient: [0.1, 0.2, 0.3], ..Default::default() });
+    // 2 everywhere and 3 more in one row: the row's solid angle in all ordinates together.
+    let texels = (0..32 * 16).map(|idx| if idx / 32 == 4 { [5.0; 3] } else { [2.0; 3] }).collect();
+    let map = Map { width: 32, height: 16, texels: Arc::new(texels), scale: 0.5, rotate_y: 0.3 };
+    let expected = 0.5 * 3.0 * 32.0 * map.solid_angle(4);
+    let map = Value::new(PortType::Environment, 0, Environment::Map(map));
+    let light = output(gpu, "light_decomposition", json!({ "count": 12 }), &[("environment", &map)]);
+    let light: &Ordinates = light.get();
+    assert_eq!(light.ambient, [1.0; 3]);
+    assert!((2..=12).contains(&light.ordinates.len()));
+    let power: f64 = light.ordinates.iter().map(|ordinate| ordinate.irradiance[1]).sum();
+    // A sum of 32 texels.
+    assert!((power / expected - 1.0).abs() < 1e-13, "{power} against {expected}");
+}

@@ -1,0 +1,4 @@
+//! The oracles as a chain.
+
+mod slabs;
+mod spheres;

@@ -1,0 +1,354 @@
+//! What the tests of nodes share: one device, a medium from plain numbers, the nodes' own code, and what
+//! they leave on the GPU as plain fields again.
+//!
+//! A [`Scene`] lies crooked in the world, so that a node that mixes up index space and world is found out.
+//! Its extinctions are f32 numbers, and oracles take the optical depths that the GPU stored, so that what
+//! is compared differs by the rounding of the stage under test alone. Real Vulkan, Metal and DX12 devices
+//! interpolate textures with weights of 8 bits: tolerances of tests that filter hold [`filtered`].
+
+use std::cell::Cell;
+use std::path::Path;
+use std::sync::{Arc, OnceLock};
+
+use glam::{DMat4, DVec3, DVec4};
+use serde_json::{Map, Value as Json};
+
+use super::oracle_scene::{BeamLight, OracleMedium};
+use super::{NodeError, Run, kind};
+use crate::gpu::{AdapterChoice, Format, Gpu, Mirror, Shader, wgsl_members};
+use crate::graph::{CancelToken, Inputs, Params, PortType, Value};
+use crate::light::{Light, Ordinate, Ordinates};
+use crate::volume::Lattice;
+use crate::volume::field::Field;
+use crate::wire::{Beam, Beams, Medium, Place, Residual, occupancy};
+
+/// The device of all tests; `None`, said aloud, where there is none and none is required
+/// (`TYNDALL_GPU=require|auto|off`).
+pub fn gpu() -> Option<&'static Gpu> {
+    static GPU: OnceLock<Result<Gpu, String>> = OnceLock::new();
+    let mode = std::env::var("TYNDALL_GPU").unwrap_or_default();
+    if mode == "off" {
+        eprintln!("skipped: TYNDALL_GPU=off");
+        return None;
+    }
+    match GPU.get_or_init(|| Gpu::open(&AdapterChoice::Auto).map_err(|error| error.to_string())) {
+        Ok(gpu) => Some(gpu),
+        Err(error) if mode == "require" => panic!("{error}"),
+        Err(error) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+    }
+}
+
+/// A tolerance for what was made with filtered textures: software drivers weigh in f32, others with
+/// 8 bits, an error of half a step of 1/256 of the difference of two neighbors.
+pub fn filtered(gpu: &Gpu, f32_tolerance: f64) -> f64 {
+    if gpu.is_cpu() { f32_tolerance } else { f32_tolerance.max(1.0 / 256.0) }
+}
+
+/// Runs a node by its id.
+pub fn run(gpu: &Gpu, id: &str, params: Json, inputs: &[(&str, &Value)]) -> Result<Vec<Value>, NodeError> {
+    with_run(gpu, id, params, inputs, |run| (kind(id).expect(id).run)(run))
+}
+
+/// The first output of a node that must not fail.
+pub fn output(gpu: &Gpu, id: &str, params: Json, inputs: &[(&str, &Value)]) -> Value {
+    run(gpu, id, params, inputs).unwrap_or_else(|error| panic!("{id}: {error}")).remove(0)
+}
+
+/// Calls `body` with what a node of this kind would be given.
+pub fn with_run<T>(
+    gpu: &Gpu,
+    id: &str,
+    params: Json,
+    inputs: &[(&str, &Value)],
+    body: impl FnOnce(&Run) -> T,
+) -> T {
+    let spec = kind(id).expect(id).spec;
+    let given: Map<String, Json> = params.as_object().expect("parameters are an object").clone();
+    let params = Params::resolve(spec.params, &given, Path::new("")).expect("valid parameters");
+    let mut list = Inputs::new(spec);
+    for (port, value) in inputs {
+        list.push(port, (*value).clone());
+    }
+    let cancel = CancelToken::new();
+    body(&Run { params: &params, inputs: &list, gpu, cancel: &cancel, gpu_ms: Cell::new(0.0) })
+}
+
+/// Numbers in 0..1 from a seed (splitmix64).
+pub struct Random(pub u64);
+
+impl Random {
+    /// The next number.
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// A unit vector.
+    pub fn direction(&mut self) -> DVec3 {
+        let z = 2.0 * self.unit() - 1.0;
+        let (sin, cos) = (std::f64::consts::TAU * self.unit()).sin_cos();
+        DVec3::new((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin, z)
+    }
+}
+
+/// What extinctions a medium has.
+#[derive(Debug, Clone, Copy)]
+pub enum Filling {
+    /// The same everywhere.
+    Homogeneous,
+    /// Even between 0 and the given.
+    Random,
+    /// The given, or 1e-4 of it.
+    Binary,
+}
+
+/// A medium as plain numbers.
+#[derive(Clone)]
+pub struct Scene {
+    /// Extinction at the cells [1/m], each an f32.
+    pub sigma_t: Field<f64>,
+    /// Edge of a cell [m].
+    pub cell_m: f64,
+    /// Of three channels.
+    pub albedo: [f64; 3],
+    /// Mean cosine.
+    pub g: f64,
+}
+
+impl Scene {
+    /// Cells of extinctions up to `sigma_t`, with a border of void as the medium node leaves one.
+    pub fn new(dims: [usize; 3], filling: Filling, sigma_t: f64) -> Self {
+        let mut random = Random(7);
+        let sigma_t = Field::from_fn(dims, |cell| {
+            let x = random.unit();
+            let share = match filling {
+                Filling::Homogeneous => 1.0,
+                Filling::Random => x,
+                Filling::Binary => f64::from(x < 0.5) + 1e-4 * f64::from(x >= 0.5),
+            };
+            let is_border = (0..3).any(|axis| cell[axis] == 0 || cell[axis] + 1 == dims[axis]);
+            if is_border { 0.0 } else { f64::from((sigma_t * share) as f32) }
+        });
+        Self { sigma_t, cell_m: 0.25, albedo: [0.9; 3], g: 0.5 }
+    }
+
+    /// Its grid in the world.
+    pub fn lattice(&self) -> Lattice {
+        let turn = DMat4::from_rotation_y(0.4) * DMat4::from_rotation_x(-0.3);
+        Lattice {
+            dims: self.sigma_t.dims,
+            occupied: self.sigma_t.dims,
+            cell_m: self.cell_m,
+            world_from_index: DMat4::from_translation(DVec3::new(1.0, -0.5, 0.25))
+                * turn
+                * DMat4::from_scale(DVec3::splat(self.cell_m)),
+        }
+    }
+
+    /// On the GPU.
+    pub fn medium(&self, gpu: &Gpu) -> Value {
+        let cells: Vec<f32> = self.sigma_t.data.iter().map(|value| *value as f32).collect();
+        let sigma_t = gpu.texture3_from("extinction", self.sigma_t.dims, Format::R32Float, &cells, "");
+        let sigma_t = sigma_t.expect("extinction");
+        let blocks = occupancy(gpu, &sigma_t).expect("blocks");
+        let medium = Medium {
+            blocks: Arc::new(blocks),
+            lattice: self.lattice(),
+            sigma_t: Arc::new(sigma_t),
+            sigma_t_max: self.sigma_t.data.iter().copied().fold(0.0, f64::max),
+            albedo: self.albedo,
+            g: self.g,
+            homogeneous: None,
+        };
+        Value::new(PortType::Medium, 0, medium)
+    }
+
+    /// A channel for the oracle.
+    pub fn oracle(&self, channel: usize) -> OracleMedium {
+        OracleMedium {
+            sigma_t: self.sigma_t.clone(),
+            h: self.cell_m,
+            albedo: self.albedo[channel],
+            g: self.g,
+        }
+    }
+
+    /// What the propagation nodes make of these lights, all parallel or all points.
+    pub fn propagate(&self, gpu: &Gpu, medium: &Value, lights: &[Beam], ambient: [f64; 3]) -> Value {
+        let world_from_index = self.lattice().world_from_index;
+        let point = |light: &Beam| match light.place {
+            Place::Parallel(_) => None,
+            Place::Point(position) => {
+                let position = world_from_index.transform_point3(position);
+                let light = Light::Point { position, intensity: light.power };
+                Some(Value::new(PortType::Light, 0, light))
+            }
+        };
+        let points: Vec<Value> = lights.iter().filter_map(point).collect();
+        if !points.is_empty() {
+            let mut inputs = vec![("medium", medium)];
+            inputs.extend(points.iter().map(|point| ("lights", point)));
+            return output(gpu, "spherical_propagation", Json::Object(Map::new()), &inputs);
+        }
+        let ordinates = lights.iter().filter_map(|light| match light.place {
+            Place::Point(_) => None,
+            Place::Parallel(direction) => Some(Ordinate {
+                direction: world_from_index.transform_vector3(direction).normalize(),
+                irradiance: light.power,
+                a0: light.a0,
+            }),
+        });
+        let ordinates = Ordinates { ordinates: ordinates.collect(), ambient };
+        let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
+        let inputs = [("medium", medium), ("ordinates", &ordinates)];
+        output(gpu, "principal_propagation", Json::Object(Map::new()), &inputs)
+    }
+}
+
+/// White parallel light along a direction of index space.
+pub fn sun(direction: DVec3, irradiance: f64) -> Beam {
+    Beam { place: Place::Parallel(direction.normalize()), power: [irradiance; 3], a0: 1.0 }
+}
+
+/// A white point light at a position of index space.
+pub fn point(position: DVec3, intensity: f64) -> Beam {
+    Beam { place: Place::Point(position), power: [intensity; 3], a0: 1.0 }
+}
+
+/// A channel of a beam for the oracle, in the f32 numbers that the shaders get.
+pub fn oracle_light(beam: &Beam, channel: usize) -> BeamLight {
+    match beam.place {
+        Place::Parallel(direction) => BeamLight::Parallel {
+            direction: direction.as_vec3().as_dvec3(),
+            irradiance: beam.power[channel],
+            spread: beam.a0,
+        },
+        Place::Point(position) => BeamLight::Point {
+            position_in_index: position.as_vec3().as_dvec3(),
+            intensity: beam.power[channel],
+        },
+    }
+}
+
+/// Optical depths at the corners, for each beam.
+pub fn taus(gpu: &Gpu, beams: &Beams) -> Vec<Field<f64>> {
+    let texels: Vec<[half::f16; 4]> = gpu.read_texture(&beams.tau.texture).expect("tau");
+    let atlas = beams.tau.texture.dims().map(|n| n as usize);
+    let of_beam = |n: usize| {
+        let origin = beams.tau.origin(n / 4).map(|n| n as usize);
+        Field::from_fn(beams.tau.corners, |[x, y, z]| {
+            let (x, y, z) = (x + origin[0], y + origin[1], z + origin[2]);
+            f64::from(texels[x + atlas[0] * (y + atlas[1] * z)][n % 4])
+        })
+    };
+    (0..beams.beams.len()).map(of_beam).collect()
+}
+
+/// Texels of four numbers, a field for each channel that is stacked along z.
+pub fn layers(gpu: &Gpu, texture: &crate::gpu::Texture, n_channels: usize) -> Vec<Field<DVec4>> {
+    let texels: Vec<[f32; 4]> = gpu.read_texture(texture).expect("layers");
+    let [nx, ny, nz] = texture.dims().map(|n| n as usize);
+    let dims = [nx, ny, nz / n_channels];
+    let wide = |texel: &[f32; 4]| DVec4::from_array(texel.map(f64::from));
+    let fields = texels.chunks_exact(texels.len() / n_channels);
+    fields.map(|field| Field { dims, data: field.iter().map(wide).collect() }).collect()
+}
+
+/// (phi, F) for each channel of a residual.
+pub fn states(gpu: &Gpu, residual: &Value) -> Vec<Field<DVec4>> {
+    let residual: &Residual = residual.get();
+    layers(gpu, &residual.moments, residual.channels.count)
+}
+
+/// The components of states, one after the other.
+pub fn flat(state: &Field<DVec4>) -> Vec<f64> {
+    state.data.iter().flat_map(|value| value.to_array()).collect()
+}
+
+/// Fails where a number is further than `relative` of it and `absolute` from what is expected, is
+/// missing, or is no number; names the worst.
+pub fn assert_close(what: &str, found: &[f64], expected: &[f64], relative: f64, absolute: f64) {
+    assert_eq!(found.len(), expected.len(), "{what}: number of values");
+    assert!(found.iter().all(|value| value.is_finite()), "{what}: not finite");
+    let excess = |(found, expected): (&f64, &f64)| {
+        let apart = (found - expected).abs();
+        // Of equal numbers nothing is to be divided, least of all 0 by 0.
+        if apart == 0.0 { 0.0 } else { apart / (relative * expected.abs() + absolute) }
+    };
+    let worst = found.iter().zip(expected).map(excess).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    if let Some((idx, excess)) = worst {
+        let (found, expected) = (found[idx], expected[idx]);
+        assert!(excess <= 1.0, "{what}[{idx}]: {found} against {expected}, {excess:.2} times the tolerance");
+    }
+}
+
+/// The largest of the absolute values.
+pub fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |largest, value| value.abs().max(largest))
+}
+
+/// Fails where a struct and its mirror in the shader differ by a member, an offset or the size.
+pub fn assert_layout<P: Mirror>(shader: &str, name: &str, choices: &[(&str, &str)]) {
+    let choices: Vec<_> = choices.iter().map(|(key, value)| (*key, (*value).to_owned())).collect();
+    let shader = Shader::expand(shader, &choices).expect(shader);
+    let (members, size) = wgsl_members(&shader, name).expect(name);
+    let members: Vec<_> = members.iter().map(|(name, offset)| (name.as_str(), *offset)).collect();
+    assert_eq!((P::members(), P::size()), (members, size), "{} and {name}", P::NAME);
+}
+
+mod tests {
+    use super::*;
+
+    #[test]
+    fn equal_is_close() {
+        assert_close("same", &[1.0, 0.0], &[1.0 + 1e-7, 1e-9], 1e-6, 1e-8);
+        assert_close("exactly", &[0.0, 3.0], &[0.0, 3.0], 0.0, 0.0);
+    }
+
+    #[test]
+    #[should_panic(expected = "x[1]: 2.02 against 2, ")]
+    fn a_percent_is_not() {
+        assert_close("x", &[1.0, 2.02], &[1.0, 2.0], 9e-3, 0.0);
+    }
+
+    #[test]
+    #[should_panic(expected = "x: not finite")]
+    fn nan_is_not() {
+        assert_close("x", &[f64::NAN], &[f64::NAN], 1.0, 1.0);
+    }
+
+    #[test]
+    #[should_panic(expected = "x: number of values")]
+    fn too_few_are_not() {
+        assert_close("x", &[], &[1.0], 1.0, 1.0);
+    }
+
+    crate::mirror! {
+        /// `Beam` of `lib/beam.wgsl` with members that have changed places.
+        struct Swapped {
+            power: [f32; 4],
+            place: [f32; 4],
+        }
+    }
+
+    #[test]
+    #[should_panic(expected = "Swapped and Beam")]
+    fn other_layouts_are_found() {
+        assert_layout::<Swapped>("lib/beam.wgsl", "Beam", &[]);
+    }
+
+    #[test]
+    fn random_numbers_are_spread() {
+        let mut random = Random(1);
+        let mean = (0..4000).map(|_| random.unit()).sum::<f64>() / 4000.0;
+        // Standard error 0.0046.
+        assert!((mean - 0.5).abs() < 0.02, "{mean}");
+        assert!((random.direction().length() - 1.0).abs() < 1e-12);
+    }
+}

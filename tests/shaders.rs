@@ -1,0 +1,57 @@
+//! Every shader that can be dispatched is valid, with all choices that Rust makes of it.
+//!
+//! That structs agree with their mirrors in Rust is tested beside each node.
+
+use tyndall::gpu::{Shader, shader_names, shader_text};
+
+/// The values that stages fill in for a name in braces.
+const CHOICES: &[(&str, &[&str])] = &[("channels", &["1", "3"]), ("format", &["r32float", "rgba32float"])];
+
+/// All ways to fill in the names that the text asks for.
+fn ways(text: &str) -> Vec<Vec<(&'static str, String)>> {
+    let mut ways = vec![Vec::new()];
+    for (name, values) in CHOICES.iter().filter(|(name, _)| text.contains(&format!("{{{name}}}"))) {
+        let with = |way: &Vec<(&'static str, String)>, value: &&str| {
+            way.iter().cloned().chain([(*name, (*value).to_owned())]).collect()
+        };
+        ways = ways
+            .iter()
+            .flat_map(|way| values.iter().map(|value| with(way, value)).collect::<Vec<_>>())
+            .collect();
+    }
+    ways
+}
+
+#[test]
+fn every_entry_point_is_valid_in_all_its_forms() {
+    let mut n_stages = 0;
+    for name in shader_names() {
+        let text = shader_text(&name).unwrap();
+        if !text.contains("@compute") {
+            continue;
+        }
+        n_stages += 1;
+        for way in ways(&text) {
+            let shader = Shader::expand(&name, &way).unwrap();
+            let module = shader.validate().unwrap_or_else(|error| panic!("{way:?}: {error}"));
+            assert_eq!(module.entry_points.len(), 1, "{name} {way:?}");
+        }
+    }
+    assert!(n_stages > 10, "{n_stages} stages: are the shaders found?");
+}
+
+#[test]
+fn choices_multiply() {
+    assert_eq!(ways("none").len(), 1);
+    assert_eq!(ways("spectrum_{channels}.wgsl").len(), 2);
+    assert_eq!(ways("{channels} {format}").len(), 4);
+}
+
+#[test]
+fn errors_name_the_file_and_line_of_the_source() {
+    // Without its choice the import is no file.
+    let error = Shader::expand("raymarch.wgsl", &[]).unwrap_err().to_string();
+    assert!(error.starts_with("raymarch.wgsl:"), "{error}");
+    let error = Shader::expand("nothing.wgsl", &[]).unwrap_err().to_string();
+    assert!(error.contains("no shader file 'nothing.wgsl'"), "{error}");
+}
