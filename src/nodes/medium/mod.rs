@@ -81,8 +81,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let fineness = Fineness {
         max_resolution: run.params.i64("max_resolution") as usize,
         wanted_cell_m: THICK / sigma_t_max,
-        // A sweep needs a number a cell in one binding.
-        max_cells: (run.params.i64("max_cells") as usize).min(run.gpu.max_binding_bytes() as usize / 4),
+        // The residual binds 16 bytes a cell at once.
+        max_cells: (run.params.i64("max_cells") as usize).min(run.gpu.max_binding_bytes() as usize / 16),
         max_axis: run.gpu.max_texture_3d() as usize / 3 - 1,
     };
     let lattice = Lattice::fit(at(low), at(high), dense.world_from_index, fineness);
