@@ -156,11 +156,11 @@ fn march(direction: vec3f) -> Layers {
 
         var single = Spectrum(0.0);
         var forward = Spectrum(0.0);
-        for (var first = 0u; first < params.n_beams; first += 4u) {
-            let origin = vec3f(pack_origin(first / 4u, corners, params.packs_per_column));
+        for (var first = 0u; first < params.n_beams; first += PACK) {
+            let origin = vec3f(pack_origin(first / PACK, corners, params.packs_per_column));
             let inside = clamp(p + 1.0, vec3f(0.5), vec3f(corners) - 0.5);
             let depths = textureSampleLevel(tau, linear_clamp, (origin + inside) / tau_size, 0.0);
-            for (var m = 0u; m < min(4u, params.n_beams - first); m += 1u) {
+            for (var m = 0u; m < min(PACK, params.n_beams - first); m += 1u) {
                 let beam = beams[first + m];
                 var travel = beam.place.xyz;
                 var power = spectrum(beam.power);

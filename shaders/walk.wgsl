@@ -1,4 +1,4 @@
-// A thread: the optical depth from one corner of a cell to each of four lights, walked exactly.
+// A thread: the optical depth from one corner of a cell to each light of a pack, walked exactly.
 // Serves parallel beams and point lights alike.
 
 #import "lib/walk.wgsl"
@@ -17,7 +17,7 @@ struct WalkParams {
 @group(0) @binding(0) var<uniform> params: WalkParams;
 @group(1) @binding(0) var sigma_t: texture_3d<f32>;
 @group(1) @binding(1) var linear_clamp: sampler;
-@group(2) @binding(0) var tau: texture_storage_3d<rgba16float, write>;
+@group(2) @binding(0) var tau: texture_storage_3d<{format}, write>;
 
 // The largest finite half float is 65504; exp(-k tau) is 0 in f32 long before, for every |g| <= 0.999.
 const TAU_MAX: f32 = 65000.0;

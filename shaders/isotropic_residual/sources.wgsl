@@ -79,13 +79,13 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
     var total = vec4f(0.0);
     if extinction > 0.0 {
         let corners = level.dims + 1u;
-        for (var first = 0u; first < params.n_beams; first += 4u) {
-            let origin = pack_origin(first / 4u, corners, params.packs_per_column) + cell;
+        for (var first = 0u; first < params.n_beams; first += PACK) {
+            let origin = pack_origin(first / PACK, corners, params.packs_per_column) + cell;
             var depths: array<vec4f, 8>;
             for (var n = 0u; n < 8u; n += 1u) {
                 depths[n] = textureLoad(tau, origin + vec3u(n & 1u, (n >> 1u) & 1u, n >> 2u), 0);
             }
-            for (var n = 0u; n < min(4u, params.n_beams - first); n += 1u) {
+            for (var n = 0u; n < min(PACK, params.n_beams - first); n += 1u) {
                 let beam = beams[first + n];
                 var one: array<f32, 8>;
                 for (var m = 0u; m < 8u; m += 1u) {

@@ -7,7 +7,10 @@ struct Beam {
     power: vec4f,
 }
 
-// First texel of a pack of four beams: packs stand along z, then along y.
+// Beams whose optical depths share a texel of the atlas.
+const PACK: u32 = {pack}u;
+
+// First texel of a pack: packs stand along z, then along y.
 fn pack_origin(pack: u32, corners: vec3u, packs_per_column: u32) -> vec3u {
     return vec3u(0u, (pack / packs_per_column) * corners.y, (pack % packs_per_column) * corners.z);
 }

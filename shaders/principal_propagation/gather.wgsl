@@ -17,7 +17,7 @@ struct GatherParams {
 @group(1) @binding(2) var lines_2: texture_3d<f32>;
 @group(1) @binding(3) var lines_3: texture_3d<f32>;
 @group(1) @binding(4) var linear_clamp: sampler;
-@group(2) @binding(0) var tau: texture_storage_3d<rgba16float, write>;
+@group(2) @binding(0) var tau: texture_storage_3d<{format}, write>;
 
 // See walk.wgsl.
 const TAU_MAX: f32 = 65000.0;

@@ -29,7 +29,7 @@ mirror! {
 pub(super) fn walk(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtlas, NodeError> {
     let atlas = TauAtlas::new(run.gpu, &medium.lattice, beams.len())?;
     let sampler = run.gpu.linear_sampler();
-    for (pack, four) in beams.chunks(4).enumerate() {
+    for (pack, four) in beams.chunks(atlas.pack).enumerate() {
         // A submission each, so that a cancel is heard between packs.
         let mut recorder = run.gpu.recorder("walk to the light");
         record(&mut recorder, run, medium, &sampler, &atlas, pack, four)?;
@@ -55,7 +55,7 @@ fn record(
         cell_m: medium.lattice.cell_m as f32,
         beams: std::array::from_fn(|n| beams[n.min(beams.len() - 1)].texel([0.0; 3])),
     };
-    let stage = run.gpu.stage("walk", &[])?;
+    let stage = run.gpu.stage("walk", &atlas.choices())?;
     let inputs = [Bind::Texture(&medium.sigma_t), Bind::Sampler(sampler)];
     let bound = stage.bind(run.gpu, &params, &inputs, &[Bind::Texture(&atlas.texture)]);
     recorder.dispatch(&bound, atlas.corners);

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::gpu::{Format, Gpu, GpuError, Texture};
+use crate::gpu::{Bind, Format, Gpu, GpuError, Recorder, Texture};
 use crate::mirror;
 use crate::volume::Lattice;
 
@@ -39,8 +39,9 @@ pub struct Beams {
     pub ambient: [f64; 3],
 }
 
-/// Optical depths at the corners of cells, four beams a texel (half floats: an error of at most 5e-4
-/// tau exp(-tau)), one pack of four beyond the other along z, then along y.
+/// Optical depths at the corners of cells. One or two beams have a 32-bit texel each; of more, four share a
+/// texel of half floats (an error of at most 5e-4 tau exp(-tau)), which costs a sample the same as one
+/// beam. Packs stand one beyond the other along z, then along y.
 #[derive(Clone)]
 pub struct TauAtlas {
     /// The texels.
@@ -49,6 +50,8 @@ pub struct TauAtlas {
     pub corners: [usize; 3],
     /// Packs that stand along z.
     pub packs_per_column: usize,
+    /// Beams that share a texel: 1 or 4.
+    pub pack: usize,
 }
 
 mirror! {
@@ -76,6 +79,25 @@ impl Beam {
     }
 }
 
+mirror! {
+    /// `RepackParams` of `shaders/repack.wgsl`.
+    pub struct RepackParams {
+        /// Corners of cells.
+        corners: [u32; 3],
+        /// 1 or 2.
+        n_beams: u32,
+        /// First texels of the beams.
+        origins: [[u32; 4]; 2],
+        /// First texel of the pack.
+        origin: [u32; 3],
+        /// Unused.
+        pad: u32,
+    }
+}
+
+/// Up to so many beams have texels of their own.
+const SINGLE: usize = 2;
+
 impl TauAtlas {
     /// Room for `n_beams`.
     ///
@@ -83,16 +105,17 @@ impl TauAtlas {
     /// [`GpuError`] where the device has no room.
     pub fn new(gpu: &Gpu, lattice: &Lattice, n_beams: usize) -> Result<Self, GpuError> {
         let corners = lattice.dims.map(|n| n + 1);
-        let n_packs = n_beams.div_ceil(4).max(1);
+        let (pack, format) = if n_beams <= SINGLE { (1, Format::R32Float) } else { (4, Format::Rgba16Float) };
+        let n_packs = n_beams.div_ceil(pack).max(1);
         let packs_per_column = (gpu.max_texture_3d() as usize / corners[2]).clamp(1, n_packs);
         let columns = n_packs.div_ceil(packs_per_column);
         let texture = gpu.texture3(
             "optical depths of the beams",
             [corners[0], corners[1] * columns, corners[2] * packs_per_column],
-            Format::Rgba16Float,
+            format,
             "lower light_decomposition.count or medium.max_resolution",
         )?;
-        Ok(Self { texture: Arc::new(texture), corners, packs_per_column })
+        Ok(Self { texture: Arc::new(texture), corners, packs_per_column, pack })
     }
 
     /// First texel of a pack.
@@ -100,6 +123,11 @@ impl TauAtlas {
         let column = pack / self.packs_per_column;
         let row = pack % self.packs_per_column;
         [0, (column * self.corners[1]) as u32, (row * self.corners[2]) as u32]
+    }
+
+    /// What shaders that read or write it are told.
+    pub fn choices(&self) -> [(&'static str, String); 2] {
+        [("pack", self.pack.to_string()), ("format", self.texture.format().wgsl().to_owned())]
     }
 }
 
@@ -109,11 +137,8 @@ impl Beams {
     /// # Errors
     /// [`GpuError`] where the device has no room.
     pub fn none(gpu: &Gpu, lattice: &Lattice) -> Result<Self, GpuError> {
-        Ok(Self {
-            beams: Vec::new(),
-            tau: TauAtlas::new(gpu, &Lattice { dims: [0; 3], ..lattice.clone() }, 0)?,
-            ambient: [0.0; 3],
-        })
+        let nowhere = Lattice { dims: [0; 3], ..lattice.clone() };
+        Ok(Self { beams: Vec::new(), tau: TauAtlas::new(gpu, &nowhere, 0)?, ambient: [0.0; 3] })
     }
 
     /// All of `parts` as one; a single part is shared, not copied.
@@ -121,37 +146,69 @@ impl Beams {
     /// # Errors
     /// [`GpuError`] where the device has no room.
     pub fn merge(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
-        let lit: Vec<&&Beams> = parts.iter().filter(|part| !part.beams.is_empty()).collect();
+        let lit: Vec<&Beams> = parts.iter().copied().filter(|part| !part.beams.is_empty()).collect();
         let ambient = std::array::from_fn(|c| parts.iter().map(|part| part.ambient[c]).sum());
         match lit.as_slice() {
             [] => Ok(Self { ambient, ..Self::none(gpu, lattice)? }),
-            [one] => Ok(Self { ambient, ..(**one).clone() }),
+            [one] => Ok(Self { ambient, ..(*one).clone() }),
             _ => Self::concatenate(gpu, lattice, &lit, ambient),
         }
     }
 
-    /// Packs are copied whole: a part whose number of beams is no multiple of 4 is filled up with
+    /// Packs of four are copied whole: a part whose number of beams is no multiple of 4 is filled up with
     /// beams without power.
     fn concatenate(
         gpu: &Gpu,
         lattice: &Lattice,
-        parts: &[&&Beams],
+        parts: &[&Beams],
         ambient: [f64; 3],
     ) -> Result<Self, GpuError> {
-        let n_packs: usize = parts.iter().map(|part| part.beams.len().div_ceil(4)).sum();
-        let tau = TauAtlas::new(gpu, lattice, 4 * n_packs)?;
+        let n_beams: usize = parts.iter().map(|part| part.beams.len()).sum();
+        let pack = if n_beams <= SINGLE { 1 } else { 4 };
+        let n_packs: usize = parts.iter().map(|part| part.beams.len().div_ceil(pack)).sum();
+        let tau = TauAtlas::new(gpu, lattice, pack * n_packs)?;
         let mut recorder = gpu.recorder("merge beams");
-        let mut beams = Vec::new();
+        let mut beams: Vec<Beam> = Vec::new();
         for part in parts {
-            for pack in 0..part.beams.len().div_ceil(4) {
-                let to = tau.origin(beams.len() / 4);
-                recorder.copy_box(&part.tau.texture, part.tau.origin(pack), &tau.texture, to, tau.corners);
-                let rest = &part.beams[4 * pack..];
+            for four in 0..part.beams.len().div_ceil(pack) {
+                let to = tau.origin(beams.len() / pack);
+                if part.tau.pack == pack {
+                    let from = part.tau.origin(four);
+                    recorder.copy_box(&part.tau.texture, from, &tau.texture, to, tau.corners);
+                } else {
+                    part.repack(gpu, &mut recorder, &tau, to)?;
+                }
+                let rest = &part.beams[pack * four..];
                 let dark = Beam { power: [0.0; 3], ..rest[0] };
-                beams.extend((0..4).map(|n| rest.get(n).copied().unwrap_or(dark)));
+                beams.extend((0..pack).map(|n| rest.get(n).copied().unwrap_or(dark)));
             }
         }
         recorder.finish()?;
         Ok(Self { beams, tau, ambient })
+    }
+
+    /// Beams with texels of their own, as one texel of four of another atlas.
+    fn repack(
+        &self,
+        gpu: &Gpu,
+        recorder: &mut Recorder,
+        into: &TauAtlas,
+        origin: [u32; 3],
+    ) -> Result<(), GpuError> {
+        let beam = |n: usize| {
+            let [x, y, z] = self.tau.origin(n.min(self.beams.len() - 1));
+            [x, y, z, 0]
+        };
+        let params = RepackParams {
+            corners: into.corners.map(|n| n as u32),
+            n_beams: self.beams.len() as u32,
+            origins: [beam(0), beam(1)],
+            origin,
+            pad: 0,
+        };
+        let inputs = [Bind::Texture(&self.tau.texture)];
+        let bound = gpu.stage("repack", &[])?.bind(gpu, &params, &inputs, &[Bind::Texture(&into.texture)]);
+        recorder.dispatch(&bound, into.corners);
+        Ok(())
     }
 }

@@ -10,7 +10,7 @@ mod channels;
 mod medium;
 mod residual;
 
-pub use beams::{Beam, BeamTexel, Beams, Place, TauAtlas};
+pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
 pub use channels::Channels;
 pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;

@@ -51,7 +51,7 @@ pub(super) fn sources(
     };
     let mut recorder = gpu.recorder("sources");
     let inputs = [Bind::Texture(&medium.sigma_t), Bind::Texture(&beams.tau.texture), Bind::Buffer(&list)];
-    let stage = gpu.stage("isotropic_residual/sources", &[])?;
+    let stage = gpu.stage("isotropic_residual/sources", &beams.tau.choices())?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
     let stage = gpu.stage("isotropic_residual/source_sum", &[])?;
     recorder.dispatch(&stage.bind(gpu, &level, &[Bind::Texture(&field)], &[Bind::Buffer(&sums)]), columns);

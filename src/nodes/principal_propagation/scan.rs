@@ -49,7 +49,7 @@ pub(super) fn scan(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtla
     let atlas = TauAtlas::new(gpu, &medium.lattice, beams.len())?;
     let sampler = gpu.linear_sampler();
     let unused = gpu.texture3("no lines", [1; 3], Format::R32Float, "")?;
-    for (pack, four) in beams.chunks(4).enumerate() {
+    for (pack, four) in beams.chunks(atlas.pack).enumerate() {
         let shears: Vec<Shear> = four.iter().map(|beam| shear(medium, beam)).collect();
         let lines = shears
             .iter()
@@ -64,7 +64,7 @@ pub(super) fn scan(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtla
         };
         let line = |n: usize| Bind::Texture(lines.get(n).unwrap_or(&unused));
         let inputs = [line(0), line(1), line(2), line(3), Bind::Sampler(&sampler)];
-        let stage = gpu.stage("principal_propagation/gather", &[])?;
+        let stage = gpu.stage("principal_propagation/gather", &atlas.choices())?;
         let mut recorder = gpu.recorder("scan");
         recorder
             .dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&atlas.texture)]), atlas.corners);

@@ -133,7 +133,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&medium.blocks),
     ];
 
-    let stage = gpu.stage("raymarch", &[("channels", channels.count.to_string())])?;
+    let [pack, _] = beams.tau.choices();
+    let stage = gpu.stage("raymarch", &[("channels", channels.count.to_string()), pack])?;
     let row_bytes = size_of::<layers::Pixel>() * camera.width;
     let band = (BAND_BYTES / row_bytes).clamp(1, camera.height);
     let pixels = gpu.buffer("a band of pixels", (row_bytes * band) as u64, "lower camera.width")?;
