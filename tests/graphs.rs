@@ -1,0 +1,170 @@
+//! The presets in `graphs/` and the samples in `data/`: they are what a newcomer sees first.
+//!
+//! Each preset is read, checked and rendered small on coarse cells, to a picture that is finite and shows
+//! a medium in front of something. How right such a picture is, is the matter of `tests/truth.rs`.
+
+mod common;
+
+use std::f64::consts::PI;
+use std::path::{Path, PathBuf};
+
+use tyndall::graph::{CancelToken, Document, Target, check};
+use tyndall::image::{self, ALPHA, Image};
+use tyndall::nodes;
+
+fn folder(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(name)
+}
+
+fn presets() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder("graphs")).unwrap().map(|entry| entry.unwrap().path());
+    let mut found: Vec<PathBuf> =
+        entries.filter(|path| path.extension().is_some_and(|ending| ending == "json")).collect();
+    found.sort();
+    assert!(found.len() >= 4, "presets: {found:?}");
+    found
+}
+
+/// The name of the only node of this kind.
+fn only(document: &Document, kind: &str) -> String {
+    let found: Vec<_> = document.nodes.iter().filter(|(_, node)| node.type_id == kind).collect();
+    assert_eq!(found.len(), 1, "nodes of type {kind}");
+    found[0].0.clone()
+}
+
+#[test]
+fn presets_are_without_problems() {
+    for path in presets() {
+        let document = Document::load(&path).unwrap();
+        let problems = check(&document, nodes::catalog(), Target::Sinks);
+        assert!(problems.is_empty(), "{path:?}: {problems:?}");
+        assert!(!document.about.is_empty(), "{path:?} does not say what it is");
+        let placed: Vec<_> =
+            document.nodes.keys().filter(|name| document.layout.contains_key(*name)).collect();
+        assert_eq!(placed.len(), document.nodes.len(), "{path:?}: places of the nodes");
+        assert_eq!(document.layout.len(), document.nodes.len(), "{path:?}: places without a node");
+        let saved = &document.nodes[&only(&document, "save_image")].params["path"];
+        let name = path.file_stem().unwrap().to_str().unwrap();
+        assert_eq!(saved.as_str(), Some(&*format!("../out/{name}.png")));
+    }
+}
+
+#[test]
+fn the_graph_of_the_readme_is_without_problems() {
+    let text = std::fs::read_to_string(folder("README.md")).unwrap();
+    let (_, after) = text.split_once("```json\n").unwrap();
+    let (graph, _) = after.split_once("```").unwrap();
+    let document = Document::parse(graph, &folder("")).unwrap();
+    let problems = check(&document, nodes::catalog(), Target::Sinks);
+    assert!(problems.is_empty(), "{problems:?}");
+}
+
+/// What is wrong with a small picture of a medium before a background, if anything is.
+fn flaw(picture: &Image, tone_mapped: &Image) -> Option<String> {
+    if let Some(value) = picture.beauty().iter().find(|v| !v.is_finite() || **v < 0.0) {
+        return Some(format!("radiance {value}"));
+    }
+    let alpha = &picture.layers[ALPHA].data;
+    if let Some(value) = alpha.iter().find(|v| !(0.0..=1.0).contains(*v)) {
+        return Some(format!("coverage {value}"));
+    }
+    let n = alpha.len() as f32;
+    let covered = alpha.iter().sum::<f32>() / n;
+    let densest = alpha.iter().copied().fold(0.0, f32::max);
+    if !(0.05..0.7).contains(&covered) || densest < 0.7 {
+        return Some(format!(
+            "the medium covers {covered:.3} of the picture, at most {densest:.3} of a pixel"
+        ));
+    }
+    let luminance = |pixel: &[f32; 3]| (pixel[0] + pixel[1] + pixel[2]) / 3.0;
+    let mean = |of: &dyn Fn(f32) -> f32| {
+        let weighted = tone_mapped.pixels().iter().zip(alpha).map(|(pixel, &a)| of(a) * luminance(pixel));
+        weighted.sum::<f32>() / alpha.iter().map(|&a| of(a)).sum::<f32>()
+    };
+    let (medium, behind) = (mean(&|a| a), mean(&|a| 1.0 - a));
+    // Linear display light: 0.01 is a dark grey (sRGB 25 of 255), 0.002 a black that is not 0 (sRGB 7).
+    if !(0.01..0.95).contains(&medium) || !(0.002..0.95).contains(&behind) || medium < 1.2 * behind {
+        return Some(format!("display light of the medium {medium:.4}, of what is behind it {behind:.4}"));
+    }
+    None
+}
+
+#[test]
+fn presets_show_a_medium() {
+    let Some(mut session) = common::session() else { return };
+    let mut flaws = Vec::new();
+    for path in presets() {
+        let mut document = Document::load(&path).unwrap();
+        for set in
+            ["camera.width=64", "camera.height=36", "medium.max_resolution=32", "medium.max_cells=40000"]
+        {
+            let (name, value) = set.split_once('=').unwrap();
+            document.set(nodes::catalog(), name, value).unwrap();
+        }
+        let (march, tone) = (only(&document, "raymarch"), only(&document, "tone_map"));
+        let solved = session.solve(&document, Target::Nodes(&[&tone]), &CancelToken::new(), &mut |_| ());
+        let failures: Vec<_> = solved.evaluation.failures().collect();
+        assert!(failures.is_empty(), "{path:?}: {failures:?}");
+        let image = |node: &str| solved.evaluation.value(node, "image").unwrap().get::<Image>().clone();
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        if let Some(flaw) = flaw(&image(&march), &image(&tone)) {
+            flaws.push(format!("{name}: {flaw}"));
+        }
+        eprintln!("{name}: {:.0} ms", solved.wall_ms);
+    }
+    assert!(flaws.is_empty(), "\n{}", flaws.join("\n"));
+}
+
+#[test]
+fn flaws_are_found() {
+    let picture = |radiance: [f32; 2], alpha: [f32; 2]| {
+        let mut picture = Image::new(2, 1, radiance.iter().flat_map(|&l| [l; 3]).collect());
+        picture.insert(ALPHA, 1, alpha.to_vec());
+        picture
+    };
+    let found = |radiance, alpha| {
+        let picture = picture(radiance, alpha);
+        flaw(&picture, &picture)
+    };
+    assert_eq!(found([0.5, 0.1], [0.9, 0.0]), None);
+    let nothing_seen = [0.0, 0.0];
+    let flawed = [
+        found([f32::NAN, 0.1], [0.9, 0.0]),
+        found([f32::INFINITY, 0.1], [0.9, 0.0]),
+        found([0.5, -0.1], [0.9, 0.0]),
+        found([0.5, 0.1], [1.1, 0.0]),
+        found([0.5, 0.1], nothing_seen),
+        found([0.5, 0.1], [0.9, 0.9]),
+        found([0.0, 0.1], [0.9, 0.0]),
+        found([0.5, 0.0], [1.0, 0.0]),
+        found([0.1, 0.1], [0.9, 0.0]),
+    ];
+    assert!(flawed.iter().all(Option::is_some), "{flawed:?}");
+}
+
+/// The maps of `examples/make_samples.rs` differ by a sun alone, 24° high in the direction of +Z.
+#[test]
+fn the_sun_is_where_the_sky_says() {
+    let read = |name: &str| image::read_environment(&folder("data").join(name)).unwrap();
+    let (with, without) = (read("sky_sun.exr"), read("sky.exr"));
+    assert_eq!((with.width, with.height), (without.width, without.height));
+    let texel = PI / with.height as f64;
+    let (mut sum, mut n_lit) = (glam::DVec3::ZERO, 0);
+    for (n, (lit, dark)) in with.pixels().iter().zip(without.pixels()).enumerate() {
+        assert!(lit.iter().chain(dark).all(|l| l.is_finite() && *l > 0.0), "texel {n}: {lit:?} {dark:?}");
+        if lit != dark {
+            let longitude = PI - texel * ((n % with.width) as f64 + 0.5);
+            let latitude = 0.5 * PI - texel * ((n / with.width) as f64 + 0.5);
+            let (x, z) = longitude.sin_cos();
+            sum += f64::from(lit[1] - dark[1])
+                * glam::DVec3::new(latitude.cos() * x, latitude.sin(), latitude.cos() * z)
+                * latitude.cos();
+            n_lit += 1;
+        }
+    }
+    let height = 24f64.to_radians();
+    let off = sum.normalize().angle_between(glam::DVec3::new(0.0, height.sin(), height.cos()));
+    // The disk takes whole texels; its mean is at most half a texel's diagonal off.
+    assert!(off < 0.5 * 2f64.sqrt() * texel, "{off} rad");
+    assert!((1..=9).contains(&n_lit), "{n_lit} texels of sun");
+}
