@@ -4,7 +4,9 @@
 # folder. Each command is shown before it runs. On a terminal the user is asked first, unless CI=true.
 # shellcheck shell=bash
 
-say() { printf '\033[1m==>\033[0m %s\n' "$*"; }
+# To stderr: what `tyndall` prints may be read by a program.
+if [ -t 2 ]; then arrow=$'\033[1m==>\033[0m'; else arrow='==>'; fi
+say() { printf '%s %s\n' "$arrow" "$*" >&2; }
 fail() {
     printf 'error: %s\n' "$*" >&2
     exit 1
@@ -13,7 +15,7 @@ has() { command -v "$1" >/dev/null 2>&1; }
 
 # Shows a command and runs it.
 show_and_run() {
-    printf '    %s\n' "$*"
+    printf '    %s\n' "$*" >&2
     "$@"
 }
 
@@ -39,9 +41,9 @@ install_packages() {
         fi
     fi
     agree "install $*?" || fail "not installed; to do it later, type: apt-get update && apt-get install $*"
-    show_and_run "${as_root[@]}" apt-get update -qq
+    show_and_run "${as_root[@]}" apt-get update -qq >&2
     show_and_run "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-        apt-get install -y -qq --no-install-recommends "$@"
+        apt-get install -y -qq --no-install-recommends "$@" >&2
 }
 
 linker_works() {
@@ -72,7 +74,7 @@ install_rust() {
     else
         agree "install Rust with rustup into ${CARGO_HOME:-$HOME/.cargo}?" ||
             fail "not installed; to do it later, type: $rustup"
-        printf '    %s\n' "$rustup"
+        printf '    %s\n' "$rustup" >&2
         # A Rust of the distribution may stay where it is; rustup's goes before it.
         RUSTUP_INIT_SKIP_PATH_CHECK=yes bash -o pipefail -c "$rustup" ||
             fail "rustup could not be installed; is the network reachable? See https://rustup.rs"
