@@ -5,7 +5,7 @@ use super::level::{BalanceParams, BatchParams, ChannelTexel, DirectionTexel, Lev
 use super::oracle::{Level, Options, Quality, Scheme, solve};
 use super::sources::SourceParams;
 use super::{effort, oracle, solver, sources};
-use crate::gpu::Gpu;
+use crate::gpu::{Format, Gpu};
 use crate::graph::Value;
 use crate::nodes::principal_propagation::oracle::mean_irradiance;
 use crate::nodes::spherical_propagation::oracle::mean_irradiance_point;
@@ -204,6 +204,32 @@ fn point_lights_light_the_residual() {
     let lights = [point(DVec3::new(20.0, 4.0, -3.0), 50.0), point(DVec3::new(3.0, -9.0, 8.0), 20.0)];
     let default = (Quality::Default, LineSet::Lines14);
     assert_solved(gpu, "points", &scene, (&lights, [0.0; 3]), default);
+}
+
+#[test]
+fn flame_without_smoke_shines() {
+    // Sources where nothing scatters, which beams never give: exact in void, c = I + q s/2, O = I + q s.
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene::new([6, 8, 5], Filling::Binary, 3.0);
+    let (dims, volume) = (scene.sigma_t.dims, scene.cell_m.powi(3));
+    let q0 = Field::from_fn(dims, |[x, y, z]| ((x + 3 * y + 2 * z) % 5) as f64);
+    let medium = scene.medium(gpu);
+    let result = with_run(gpu, "isotropic_residual", json!({}), &[("medium", &medium)], |run| {
+        let medium: &Medium = medium.get();
+        let channels = Channels { count: 1, color: [1.0; 3] };
+        let problem = Problem::new(medium, &channels, [0.0; 3], LineSet::Lines14);
+        let texels: Vec<[f32; 4]> = q0.data.iter().map(|q| [*q as f32, 0.0, 0.0, 0.0]).collect();
+        let field = gpu.texture3_from("sources", dims, Format::Rgba32Float, &texels, "").unwrap();
+        let power = (q0.data.iter().sum::<f64>() * volume) as f32;
+        let sums = gpu.buffer_from("powers of sources", &[power, 0.0, 0.0, 0.0], "").unwrap();
+        let (sources, effort) = (sources::Sources { field, sums }, effort(run).unwrap());
+        solver::solve(run, medium, sources, &problem, effort, channels, 1 << 30).unwrap()
+    });
+    let sources = oracle::Sources { q0, ..oracle::Sources::new(dims, 0.0) };
+    let solved = solve(Level::new(&scene.oracle(0), sources), Quality::Default.options());
+    let expected = flat(&solved.state);
+    let found = flat(&layers(gpu, &result.moments, 1)[0]);
+    assert_close("flame", &found, &expected, 1e-5, 1e-5 * largest(&expected));
 }
 
 #[test]
