@@ -172,11 +172,12 @@ fn wrong_arrows(module: &[String], text: &str) -> Vec<String> {
         if is_area && to != from && !allowed.contains(&to) {
             wrong.push(format!("{from} names {to}"));
         }
-        // A node is a folder; the files beside them are what nodes share.
+        // A node is a folder with a mod.rs; the files beside them are what nodes share.
         let other_node = from == "nodes"
             && path.len() > 1
             && module.get(1) != path.get(1)
-            && root().join("src/nodes").join(&path[1]).is_dir();
+            && !path[1].is_empty()
+            && root().join("src/nodes").join(&path[1]).join("mod.rs").is_file();
         if to == from && other_node && module.len() > 1 {
             wrong.push(format!("node {} names node {}", module[1], path[1]));
         }
@@ -253,10 +254,16 @@ fn every_shader_is_used() {
         .flat_map(|(_, text)| text.lines())
         .filter_map(|line| line.trim().strip_prefix("#import \"")?.strip_suffix('"'))
         .collect();
-    let sources = sources();
+    let mut users: Vec<String> = sources().into_iter().map(|source| source.text).collect();
+    users.push(std::fs::read_to_string(root().join("benches/picture.rs")).unwrap());
     for (name, _) in &shaders {
-        let stage = format!("\"{}\"", name.trim_end_matches(".wgsl"));
-        let runs = sources.iter().any(|source| source.text.contains(&format!("stage({stage}")));
+        let stage = name.trim_end_matches(".wgsl");
+        // By its whole name, or as one of a folder's stages: format!("folder/{stage}").
+        let (folder, file) = stage.split_once('/').unwrap_or(("", stage));
+        let listed = [format!("\"{folder}/{{stage}}\""), format!("\"{file}\"")];
+        let runs = users.iter().any(|text| {
+            text.contains(&format!("stage(\"{stage}\"")) || listed.iter().all(|part| text.contains(part))
+        });
         let imported = imports.iter().any(|pattern| fills(pattern, name));
         assert!(runs || imported, "shaders/{name} is neither imported nor a stage: use it or remove it");
     }

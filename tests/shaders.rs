@@ -5,7 +5,11 @@
 use tyndall::gpu::{Shader, shader_names, shader_text};
 
 /// The values that stages fill in for a name in braces.
-const CHOICES: &[(&str, &[&str])] = &[("channels", &["1", "3"]), ("format", &["r32float", "rgba32float"])];
+const CHOICES: &[(&str, &[&str])] = &[
+    ("channels", &["1", "3"]),
+    ("format", &["r32float", "rgba16float", "rgba32float"]),
+    ("pack", &["1", "4"]),
+];
 
 /// All ways to fill in the names that the text asks for.
 fn ways(text: &str) -> Vec<Vec<(&'static str, String)>> {
@@ -22,6 +26,19 @@ fn ways(text: &str) -> Vec<Vec<(&'static str, String)>> {
     ways
 }
 
+/// The text of a shader and of all that it imports.
+fn with_imports(name: &str) -> String {
+    let mut text = String::new();
+    let mut to_read = vec![name.to_owned()];
+    while let Some(name) = to_read.pop() {
+        let file = shader_text(&name.replace("{channels}", "1")).unwrap();
+        let imports = file.lines().filter_map(|line| line.strip_prefix("#import "));
+        to_read.extend(imports.map(|import| import.trim().trim_matches('"').to_owned()));
+        text += &file;
+    }
+    text
+}
+
 #[test]
 fn every_entry_point_is_valid_in_all_its_forms() {
     let mut n_stages = 0;
@@ -31,7 +48,7 @@ fn every_entry_point_is_valid_in_all_its_forms() {
             continue;
         }
         n_stages += 1;
-        for way in ways(&text) {
+        for way in ways(&with_imports(&name)) {
             let shader = Shader::expand(&name, &way).unwrap();
             let module = shader.validate().unwrap_or_else(|error| panic!("{way:?}: {error}"));
             assert_eq!(module.entry_points.len(), 1, "{name} {way:?}");
@@ -44,7 +61,7 @@ fn every_entry_point_is_valid_in_all_its_forms() {
 fn choices_multiply() {
     assert_eq!(ways("none").len(), 1);
     assert_eq!(ways("spectrum_{channels}.wgsl").len(), 2);
-    assert_eq!(ways("{channels} {format}").len(), 4);
+    assert_eq!(ways("{channels} {format}").len(), 6);
 }
 
 #[test]

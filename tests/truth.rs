@@ -34,6 +34,34 @@ fn render(graph: &Path) -> Option<Image> {
     Some(solved.evaluation.value("march", "image").unwrap().get::<Image>().clone())
 }
 
+/// Renders `NAME.graph.json` of a folder and compares it with `NAME.exr` where `NAME_tau.exr` has medium;
+/// says what was found, and whether all channels together and each apart are within the limit.
+fn is_within(folder: &Path, scene: &str, limit: f64) -> bool {
+    let file = |ending: &str| folder.join(format!("{scene}{ending}"));
+    let Some(picture) = render(&file(".graph.json")) else { return true };
+    let reference = image::read(&file(".exr")).unwrap();
+    let mask = image::read(&file("_tau.exr")).unwrap();
+    let found = metrics::compare(&picture, &reference, Some(&mask)).unwrap();
+    let channels: Vec<String> =
+        found.per_channel.iter().map(|c| format!("{:.4} ({:+.4})", c.block_relative, c.bias)).collect();
+    eprintln!(
+        "{scene}: block_relative {:.4}, bias {:+.4}, limit {limit:.4}; channels {}",
+        found.block_relative,
+        found.bias,
+        channels.join(", ")
+    );
+    let worst = found.per_channel.iter().map(|c| c.block_relative).fold(found.block_relative, f64::max);
+    worst <= limit && found.non_finite == 0
+}
+
+#[test]
+fn our_own_scene_is_within_a_point_of_the_prototype() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/truth");
+    assert!(is_within(&folder, "checker_sun", 0.031));
+    // The comparison sees an error: nothing is within 0.1 %.
+    assert!(common::session().is_none() || !is_within(&folder, "checker_sun", 0.001));
+}
+
 #[test]
 fn scenes_are_within_a_point_of_the_prototype() {
     let Some(truth) = common::shared_dir().map(|shared| shared.join("truth")) else {
@@ -41,26 +69,11 @@ fn scenes_are_within_a_point_of_the_prototype() {
         return;
     };
     let only = std::env::var("TYNDALL_SCENE").unwrap_or_default();
-    let mut failed = Vec::new();
-    for (scene, prototype) in SCENES.iter().filter(|(scene, _)| scene.starts_with(&only)) {
-        let file = |ending: &str| truth.join(format!("{scene}{ending}"));
-        let Some(picture) = render(&file(".graph.json")) else { return };
-        let reference = image::read(&file(".exr")).unwrap();
-        let mask = image::read(&file("_tau.exr")).unwrap();
-        let found = metrics::compare(&picture, &reference, Some(&mask)).unwrap();
-        let channels: Vec<String> =
-            found.per_channel.iter().map(|c| format!("{:.4} ({:+.4})", c.block_relative, c.bias)).collect();
-        eprintln!(
-            "{scene}: block_relative {:.4}, bias {:+.4}, limit {:.4}; channels {}",
-            found.block_relative,
-            found.bias,
-            prototype + 0.01,
-            channels.join(", ")
-        );
-        let worst = found.per_channel.iter().map(|c| c.block_relative).fold(found.block_relative, f64::max);
-        if worst > prototype + 0.01 || found.non_finite > 0 {
-            failed.push(scene);
-        }
-    }
+    let failed: Vec<&str> = SCENES
+        .iter()
+        .filter(|(scene, _)| scene.starts_with(&only))
+        .filter(|(scene, prototype)| !is_within(&truth, scene, prototype + 0.01))
+        .map(|(scene, _)| *scene)
+        .collect();
     assert!(failed.is_empty(), "over their limits: {failed:?}");
 }

@@ -238,13 +238,18 @@ pub fn oracle_light(beam: &Beam, channel: usize) -> BeamLight {
 
 /// Optical depths at the corners, for each beam.
 pub fn taus(gpu: &Gpu, beams: &Beams) -> Vec<Field<f64>> {
-    let texels: Vec<[half::f16; 4]> = gpu.read_texture(&beams.tau.texture).expect("tau");
+    let pack = beams.tau.pack;
+    let texels: Vec<f64> = if pack == 1 {
+        gpu.read_texture::<f32>(&beams.tau.texture).expect("tau").into_iter().map(f64::from).collect()
+    } else {
+        gpu.read_texture::<half::f16>(&beams.tau.texture).expect("tau").into_iter().map(f64::from).collect()
+    };
     let atlas = beams.tau.texture.dims().map(|n| n as usize);
     let of_beam = |n: usize| {
-        let origin = beams.tau.origin(n / 4).map(|n| n as usize);
+        let origin = beams.tau.origin(n / pack).map(|n| n as usize);
         Field::from_fn(beams.tau.corners, |[x, y, z]| {
             let (x, y, z) = (x + origin[0], y + origin[1], z + origin[2]);
-            f64::from(texels[x + atlas[0] * (y + atlas[1] * z)][n % 4])
+            texels[pack * (x + atlas[0] * (y + atlas[1] * z)) + n % pack]
         })
     };
     (0..beams.beams.len()).map(of_beam).collect()
@@ -340,7 +345,7 @@ mod tests {
     #[test]
     #[should_panic(expected = "Swapped and Beam")]
     fn other_layouts_are_found() {
-        assert_layout::<Swapped>("lib/beam.wgsl", "Beam", &[]);
+        assert_layout::<Swapped>("lib/beam.wgsl", "Beam", &[("pack", "4")]);
     }
 
     #[test]

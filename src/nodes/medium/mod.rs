@@ -40,7 +40,7 @@ static SPEC: NodeSpec = NodeSpec {
         ParamSpec::int("max_resolution", 0)
             .between(0.0, 4096.0)
             .soft(0.0, 512.0)
-            .doc("Cells along the longest axis; 0 is the volume's own."),
+            .doc("Cells along the longest axis, and no splitting; 0 is the volume's own."),
         ParamSpec::int("max_cells", 1 << 24)
             .at_least(1.0)
             .soft(1e5, 1e8)
@@ -80,7 +80,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let at = |voxel: [usize; 3]| DVec3::from_array(voxel.map(|n| n as f64));
     let fineness = Fineness {
         max_resolution: run.params.i64("max_resolution") as usize,
-        wanted_cell_m: THICK / sigma_t_max,
+        // Who bounds the resolution does not want it split again.
+        wanted_cell_m: if run.params.i64("max_resolution") > 0 { f64::INFINITY } else { THICK / sigma_t_max },
         // The residual binds 16 bytes a cell at once.
         max_cells: (run.params.i64("max_cells") as usize).min(run.gpu.max_binding_bytes() as usize / 16),
         max_axis: run.gpu.max_texture_3d() as usize / 3 - 1,

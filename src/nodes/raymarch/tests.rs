@@ -279,7 +279,7 @@ fn constant_light_is_seen_through_anything_at_albedo_one() {
 #[test]
 fn layouts_are_those_of_the_shader() {
     for channels in ["1", "3"] {
-        let choices = [("channels", channels)];
+        let choices = [("channels", channels), ("pack", "4")];
         assert_layout::<MarchParams>("raymarch.wgsl", "MarchParams", &choices);
         assert_layout::<Pixel>("raymarch.wgsl", "Pixel", &choices);
     }

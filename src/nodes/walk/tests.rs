@@ -175,7 +175,8 @@ fn depths_beyond_half_floats_end_at_their_largest() {
 
 #[test]
 fn layouts_are_those_of_the_shader() {
-    assert_layout::<WalkParams>("walk.wgsl", "WalkParams", &[]);
-    assert_layout::<ShapeTexel>("walk.wgsl", "Shape", &[]);
-    assert_layout::<BeamTexel>("walk.wgsl", "Beam", &[]);
+    const PACKED: [(&str, &str); 2] = [("pack", "4"), ("format", "rgba16float")];
+    assert_layout::<WalkParams>("walk.wgsl", "WalkParams", &PACKED);
+    assert_layout::<ShapeTexel>("walk.wgsl", "Shape", &PACKED);
+    assert_layout::<BeamTexel>("walk.wgsl", "Beam", &PACKED);
 }
