@@ -122,9 +122,9 @@ fn assert_seen(gpu: &Gpu, what: &str, scene: &Scene, lights: &[Beam], ambient: [
     let inputs =
         [("medium", &medium), ("beams", &beams), ("residual", &residual), ("environment", &constant)];
     let image = march(gpu, &inputs, camera);
-    for c in 0..3 {
+    for (c, ambient) in ambient.into_iter().enumerate() {
         let seen = expected(scene, c, &lit, &rays);
-        let through = |seen: &Marched| seen.background - ambient[c] * (-seen.tau).exp();
+        let through = |seen: &Marched| seen.background - ambient * (-seen.tau).exp();
         let compare = |layer: &str, of: &dyn Fn(&Marched) -> f64| {
             let expected: Vec<f64> = seen.iter().map(of).collect();
             // Positions of f32 are 2e-6 cells off, over some 40 steps of eight roundings; the ray ends
