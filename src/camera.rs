@@ -8,9 +8,9 @@ use glam::DVec3;
 /// A view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// Of the pinhole [m].
+    /// Of the pinhole, in meters.
     pub position: DVec3,
-    /// A point in the middle of the picture [m].
+    /// A point in the middle of the picture, in meters.
     pub look_at: DVec3,
     /// What is up in the picture; need be neither unit nor across the view.
     pub up: DVec3,

@@ -29,7 +29,7 @@ pub struct Solved {
     pub evaluation: Evaluation,
     /// Costs of each node that ran or was cached, in order.
     pub costs: Vec<NodeCost>,
-    /// Wall clock of all [ms].
+    /// Wall clock of all in ms.
     pub wall_ms: f64,
     /// The most bytes held on the device at once.
     pub peak_gpu_bytes: u64,
@@ -43,9 +43,9 @@ pub struct NodeCost {
     /// Its kind.
     #[serde(rename = "type")]
     pub kind: &'static str,
-    /// Wall clock [ms].
+    /// Wall clock in ms.
     pub cpu_ms: f64,
-    /// Of its stages [ms].
+    /// Of its stages in ms.
     pub gpu_ms: f64,
     /// Of its outputs.
     pub bytes: u64,

@@ -67,11 +67,11 @@ pub fn write(path: &Path, bytes: &[u8]) -> Result<(), WriteError> {
     replace(folder, &target, bytes).map_err(failed)
 }
 
-/// Whether [`write`] could write to `path`, as far as one can tell before: nothing is changed. To be
+/// Whether [`write()`] could write to `path`, as far as one can tell before: nothing is changed. To be
 /// asked before an hour of work.
 ///
 /// # Errors
-/// As [`write`], except for what only the bytes themselves show (a full disk).
+/// As [`write()`], except for what only the bytes themselves show (a full disk).
 pub fn check(path: &Path) -> Result<(), WriteError> {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     match fs::metadata(&target) {

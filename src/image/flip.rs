@@ -22,7 +22,7 @@ const KNEE_OUT: f64 = 0.95;
 const FEATURE_WIDTH_DEG: f64 = 0.082;
 const FEATURE_POWER: f64 = 0.5;
 
-/// Amplitude and width [deg²] of the Gaussians of the contrast sensitivity: Y, Cx, and two of Cz.
+/// Amplitude, and width in deg², of the Gaussians of the contrast sensitivity: Y, Cx, and two of Cz.
 const SENSITIVITY: [[f64; 2]; 4] = [[1.0, 0.0047], [1.0, 0.0053], [34.1, 0.04], [13.5, 0.025]];
 
 /// Rows of linear Rec. 709 to XYZ, D65, with the authors' digits.

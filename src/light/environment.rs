@@ -29,7 +29,7 @@ pub struct Map {
     pub texels: Arc<Vec<[f32; 3]>>,
     /// What radiance is multiplied by.
     pub scale: f64,
-    /// Turn about +Y [rad].
+    /// Turn about +Y in radians.
     pub rotate_y: f64,
 }
 
@@ -54,7 +54,7 @@ impl Map {
         DVec3::new(latitude.cos() * longitude.sin(), latitude.sin(), latitude.cos() * longitude.cos())
     }
 
-    /// Solid angle of a texel of this row [sr], exact.
+    /// Solid angle of a texel of this row in sr, exact.
     pub fn solid_angle(&self, row: usize) -> f64 {
         let edge = |row: usize| (0.5 * PI - PI * row as f64 / self.height as f64).sin();
         2.0 * PI / self.width as f64 * (edge(row) - edge(row + 1))

@@ -22,7 +22,7 @@ pub enum Light {
     },
     /// A point that shines evenly.
     Point {
-        /// In the world [m].
+        /// In the world, in meters.
         position: DVec3,
         /// [W/sr], linear Rec. 709.
         intensity: [f64; 3],

@@ -71,7 +71,7 @@ pub struct Run<'a> {
     pub gpu: &'a Gpu,
     /// To be asked between stages.
     pub cancel: &'a crate::graph::CancelToken,
-    /// GPU time so far [ms].
+    /// GPU time so far in ms.
     pub gpu_ms: Cell<f64>,
 }
 

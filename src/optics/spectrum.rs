@@ -50,7 +50,7 @@ fn blackbody_xyz(kelvin: f64) -> [f64; 3] {
     xyz
 }
 
-/// CIE 1931 2° color matching functions at a wavelength [nm], the fit of Wyman, Sloan, Shirley.
+/// CIE 1931 2° color matching functions at a wavelength in nm, the fit of Wyman, Sloan, Shirley.
 fn observer(nm: f64) -> [f64; 3] {
     let lobe = |height: f64, center: f64, below: f64, above: f64| {
         let t = (nm - center) / if nm < center { below } else { above };

@@ -12,7 +12,7 @@ pub struct Dense {
     pub dims: [usize; 3],
     /// Value of voxel (x, y, z) at `x + nx * (y + ny * z)`.
     pub values: Vec<f32>,
-    /// From index coordinates to the world [m].
+    /// From index coordinates to the world in meters.
     pub world_from_index: DMat4,
 }
 
@@ -29,7 +29,7 @@ impl Dense {
         }
     }
 
-    /// Edge of a voxel along its first axis [m].
+    /// Edge of a voxel along its first axis in meters.
     pub fn voxel_m(&self) -> f64 {
         self.world_from_index.x_axis.truncate().length()
     }

@@ -18,10 +18,13 @@ pub const LEAF_SIZE: i32 = 8;
 /// A scalar volume.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Grid {
+    /// As a graph asks for it; need not be unique, as the writer numbers grids of one name.
     pub name: String,
     /// Value where there is neither leaf nor tile.
     pub background: f32,
+    /// Takes voxel centers, at integer coordinates, to meters; affine.
     pub world_from_index: DMat4,
+    /// In any order; none overlaps another or a tile.
     pub leaves: Vec<Leaf>,
     /// Only tiles that are active or differ from the background.
     pub tiles: Vec<Tile>,
@@ -34,6 +37,7 @@ pub struct Leaf<V = f32> {
     pub origin: IVec3,
     /// One bit a voxel in the order of the values, the lowest bit first.
     pub active: [u64; 8],
+    /// In the grid's unit, those of inactive voxels too.
     pub values: Box<[V; 512]>,
 }
 
@@ -44,7 +48,9 @@ pub struct Tile<V = f32> {
     pub origin: IVec3,
     /// Edge in voxels: 8, 128 or 4096.
     pub size: i32,
+    /// Of each voxel covered, in the grid's unit.
     pub value: V,
+    /// Whether all the voxels covered count as active, or none.
     pub active: bool,
 }
 

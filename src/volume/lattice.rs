@@ -15,7 +15,7 @@ pub struct Lattice {
     pub dims: [usize; 3],
     /// Cells along x, y, z that can be anything but void, with their border of one cell.
     pub occupied: [usize; 3],
-    /// Edge of a cell [m].
+    /// Edge of a cell in meters.
     pub cell_m: f64,
     /// A rotation, one scale and a translation.
     pub world_from_index: DMat4,
@@ -26,7 +26,7 @@ pub struct Lattice {
 pub struct Fineness {
     /// Cells along the longest axis; 0 for the volume's own.
     pub max_resolution: usize,
-    /// No cell should be thicker than this [m], if that fits in `max_cells`.
+    /// No cell should be thicker than this in meters, if that fits in `max_cells`.
     pub wanted_cell_m: f64,
     /// Bound of the number of cells when cells are made smaller than voxels.
     pub max_cells: usize,
@@ -108,7 +108,7 @@ impl Lattice {
         self.dims.iter().product()
     }
 
-    /// From the world [m] to index coordinates.
+    /// From the world in meters to index coordinates.
     pub fn index_from_world(&self) -> DMat4 {
         self.world_from_index.inverse()
     }

@@ -29,7 +29,7 @@ enum Source {
 pub struct Evenly {
     /// An ellipsoid; else a box.
     pub ellipsoid: bool,
-    /// Half of its extents [m], before the volume's transform; its center is the origin.
+    /// Half of its extents in meters, before the volume's transform; its center is the origin.
     pub half_extent: DVec3,
 }
 

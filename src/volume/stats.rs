@@ -56,7 +56,9 @@ impl Components for bool {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Sample {
+    /// Of float, integer, bool and mask grids; a bool is 0 or 1, and an integer beyond 2^53 is rounded.
     Scalar(f64),
+    /// x, y and z of a vec3 grid.
     Vector([f64; 3]),
 }
 
@@ -74,12 +76,17 @@ impl Sample {
 /// What there is to say about a grid's active voxels; nothing but the count if there are none.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figures {
+    /// A tile counts all the voxels that it covers; stays at 2^64 − 1 when there are more.
     pub active_voxels: u64,
+    /// Least value, for vectors of each component by itself; +∞ where all are NaN.
     pub min: Option<Sample>,
+    /// Greatest value, for vectors of each component by itself; −∞ where all are NaN.
     pub max: Option<Sample>,
+    /// Sum over count, in f64; NaN as soon as one value is.
     pub mean: Option<Sample>,
-    /// Index space, inclusive.
+    /// Lowest index coordinates of an active voxel, inclusive.
     pub bbox_min: Option<[i32; 3]>,
+    /// Highest index coordinates of an active voxel, inclusive.
     pub bbox_max: Option<[i32; 3]>,
 }
 

@@ -62,7 +62,7 @@ mirror! {
     }
 }
 
-/// Edge of a block [cells]; `BLOCK` of `shaders/lib/block.wgsl`.
+/// Edge of a block in cells; `BLOCK` of `shaders/lib/block.wgsl`.
 const BLOCK: usize = 8;
 
 /// What each block of cells holds at most, so that rays pass empty ones in one step.

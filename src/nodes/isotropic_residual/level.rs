@@ -138,7 +138,7 @@ fn lines(direction: &LineDirection, dims: [usize; 3]) -> Lines {
     Lines { n_u: dims[u], n_v: dims[v], n_phases: hop.min(dims[along]) }
 }
 
-/// Power that enters for an inflow of 1 on every line, as the sweep counts it [m²]: a cell whose
+/// Power in m² that enters for an inflow of 1 on every line, as the sweep counts it: a cell whose
 /// predecessor lies outside begins a line.
 fn entering(problem: &Problem, dims: [usize; 3], cell_m: f64) -> f64 {
     let all: usize = dims.iter().product();

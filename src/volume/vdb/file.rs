@@ -46,9 +46,13 @@ macro_rules! for_type {
 /// An open file: what it says of itself and of its grids.
 #[derive(Debug)]
 pub struct File {
+    /// Where it was opened, or its name in messages if it is in memory.
     pub path: PathBuf,
+    /// Of the file format, 218 to 225.
     pub version: u32,
+    /// The file's own, apart from that of its grids.
     pub metadata: Metadata,
+    /// In the order of the file, those that are refused too.
     pub grids: Vec<Entry>,
     source: Source,
 }
@@ -58,13 +62,15 @@ pub struct File {
 pub struct Entry {
     /// Unique in the file: `density`, or `density[1]` for the second of several.
     pub name: String,
+    /// Value type of the tree in memory; what it is saved as also depends on `half`.
     pub kind: GridType,
     /// Saved with 16 bits a component.
     pub half: bool,
-    /// In OpenVDB's words, like `blosc + active values`.
+    /// In OpenVDB's words, like `blosc + active values`; empty if the grid's head is damaged.
     pub compression: String,
+    /// The grid's own, like its class and creator; empty if its head is damaged.
     pub metadata: Metadata,
-    /// `None` only if refused.
+    /// Takes voxel centers to meters; `None` only if refused.
     pub world_from_index: Option<DMat4>,
     /// Name of the grid whose tree this one shares.
     pub parent: Option<String>,

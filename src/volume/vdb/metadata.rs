@@ -17,11 +17,17 @@ pub type Metadata = IndexMap<String, MetaValue>;
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum MetaValue {
+    /// `bool`; every byte but 0 is true.
     Bool(bool),
+    /// `int32` and `int64`.
     Int(i64),
+    /// `half`, `float` and `double`.
     Float(f64),
+    /// `string`; what is no UTF-8 became U+FFFD.
     Text(String),
+    /// `vec2i` to `vec4i`: 2 to 4 numbers.
     Ints(Vec<i64>),
+    /// Vectors of 2 to 4, quaternions of 4, matrices of 9 or 16 numbers.
     Floats(Vec<f64>),
 }
 

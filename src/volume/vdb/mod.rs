@@ -39,15 +39,57 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum VdbError {
     #[error("{}: {source}", path.display())]
-    Io { path: PathBuf, source: std::io::Error },
+    /// The system refused to open, read, write or replace the file.
+    Io {
+        /// The file.
+        path: PathBuf,
+        /// The system's reason.
+        source: std::io::Error,
+    },
     #[error("{}: {}at byte {offset}: {what}", path.display(), of_grid(grid))]
-    Invalid { path: PathBuf, grid: Option<String>, offset: u64, what: String },
+    /// Bytes that no OpenVDB file has: it is damaged, cut off, or another kind of file.
+    Invalid {
+        /// The file, or what [`File::from_bytes`] was told to call it.
+        path: PathBuf,
+        /// Its listed name; `None` while only the file's head and list of grids are read.
+        grid: Option<String>,
+        /// Byte in the file where what is at fault starts.
+        offset: u64,
+        /// What was found, and what is allowed.
+        what: String,
+    },
     #[error("{}: {}at byte {offset}: not supported: {what}", path.display(), of_grid(grid))]
-    Unsupported { path: PathBuf, grid: Option<String>, offset: u64, what: String },
+    /// Well formed as far as it was read, but of a version, compression or map that has no reader here.
+    Unsupported {
+        /// The file, or what [`File::from_bytes`] was told to call it.
+        path: PathBuf,
+        /// Its listed name; `None` while only the file's head and list of grids are read.
+        grid: Option<String>,
+        /// Byte in the file where what is at fault starts.
+        offset: u64,
+        /// What was found, and what is read.
+        what: String,
+    },
     #[error("{}: grid `{grid}`: {why}", path.display())]
-    Refused { path: PathBuf, grid: String, why: String },
+    /// A grid that is listed and that [`File::read`] gives no field for.
+    Refused {
+        /// The file, or what [`File::from_bytes`] was told to call it.
+        path: PathBuf,
+        /// Its listed name.
+        grid: String,
+        /// What stands in the way: its kind of tree or transform, vectors, a damaged head, a missing parent.
+        why: String,
+    },
     #[error("{}: no grid `{name}`; there {known}", path.display())]
-    UnknownGrid { path: PathBuf, name: String, known: String },
+    /// A name that no grid of the file has, with or without a number.
+    UnknownGrid {
+        /// The file, or what [`File::from_bytes`] was told to call it.
+        path: PathBuf,
+        /// The name asked for.
+        name: String,
+        /// The listed names as a part of the sentence: `are none`, or `are` and each in backquotes.
+        known: String,
+    },
 }
 
 fn of_grid(grid: &Option<String>) -> String {
@@ -57,17 +99,27 @@ fn of_grid(grid: &Option<String>) -> String {
 /// What a grid holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum GridType {
+    /// One f32 a voxel.
     Float,
     /// 16-bit floats in memory too; a float grid that is only saved so is `Float` with [`Entry::half`].
     Half,
+    /// One f64 a voxel; a field of it is rounded to f32.
     Double,
+    /// One i32 a voxel; beyond 2^24 a field of it is rounded.
     Int32,
+    /// One i64 a voxel; beyond 2^24 a field of it is rounded.
     Int64,
+    /// A bit a voxel beside the active mask; a field of it is 0 or 1.
     Bool,
+    /// Nothing but the active mask; a field of it is 1 where active, 0 elsewhere.
     Mask,
+    /// Three f32 a voxel; figures only.
     Vec3s,
+    /// Three f64 a voxel; figures only.
     Vec3d,
+    /// Three i32 a voxel; figures only.
     Vec3i,
+    /// Particles, or their indices, sorted into voxels; always refused.
     Points,
     /// A tree that is not known, by OpenVDB's name for it.
     Other(String),

@@ -14,31 +14,40 @@ use std::collections::HashMap;
 /// A file in figures.
 #[derive(Debug, Clone, Serialize)]
 pub struct Summary {
+    /// The path as it was given; what is no UTF-8 became U+FFFD.
     pub file: String,
     /// Of the file format.
     pub version: u32,
+    /// In the order of the file.
     pub grids: Vec<GridSummary>,
 }
 
 /// A grid in figures, or why there are none.
 #[derive(Debug, Clone, Serialize)]
 pub struct GridSummary {
+    /// Unique in the file, and what [`File::read`] takes.
     pub name: String,
+    /// Value type in lower case, as [`GridType`] prints it; `half` for a float grid that is only saved so, too.
     #[serde(rename = "type")]
     pub kind: String,
+    /// Why there are neither figures nor a background.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refused: Option<String>,
+    /// Its fields stand beside the others in the JSON, without a level of their own.
     #[serde(flatten)]
     pub figures: Option<Figures>,
-    /// Edges of a voxel in world space.
+    /// Lengths of a voxel's edges along index x, y and z, in meters.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub voxel_size: Option<[f64; 3]>,
-    /// Row after row.
+    /// Row after row, of a matrix that takes column vectors to meters.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub world_from_index: Option<[f64; 16]>,
+    /// Value where the tree has no node, in the grid's unit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub background: Option<Sample>,
+    /// In OpenVDB's words, as [`Entry::compression`].
     pub compression: String,
+    /// As the file has it and unchecked: extents and counts in it may be wrong.
     pub metadata: Metadata,
 }
 

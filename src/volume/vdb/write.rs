@@ -23,14 +23,17 @@ const LIBRARY_VERSION: [u32; 2] = [10, 0];
 /// How values are stored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum WriteCompression {
+    /// As they are; inactive ones are left out where at most two values stand for them all.
     #[default]
     None,
+    /// Each node's values as a zlib stream of the usual level 6, where that is shorter than the values.
     Zip,
 }
 
 /// How to write a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WriteOptions {
+    /// Of the values alone; masks are stored as they are.
     pub compression: WriteCompression,
     /// Round values to 16 bits.
     pub half: bool,
