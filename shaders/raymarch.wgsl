@@ -76,7 +76,9 @@ struct Pixel {
 @group(1) @binding(8) var blocks: texture_3d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
-// Radiance under which the rest of a ray is not worth its steps, against what came in before.
+// Where less than this is left of a ray, what lights it is not evaluated any more; where less than that,
+// neither is its optical depth, on which a bright sun behind may still depend.
+const FAINT: f32 = 1e-3;
 const OPAQUE: f32 = 1e-5;
 // The table of K: columns 255 sqrt(sin(theta/2)), rows 63 sqrt(x/60).
 const PEAK_SIZE: vec2f = vec2f(256.0, 64.0);
@@ -136,6 +138,9 @@ fn march(direction: vec3f) -> Layers {
     let near2 = BALL_PER_EDGE * BALL_PER_EDGE * dt * dt;
     let tau_size = vec3f(textureDimensions(tau));
     let corners = params.dims + 1u;
+    // What is left of the ray: of light that nothing deflects, and of light that the forward peak may.
+    var sharp = 1.0;
+    var through = Spectrum(1.0);
     for (var n = 0.0; n < n_steps; n += 1.0) {
         let t = span.x + (n + 0.5) * dt;
         let p = params.eye + t * direction;
@@ -151,8 +156,20 @@ fn march(direction: vec3f) -> Layers {
         let step_tau = s * length_m;
         // The middle of the step: its start would be up to 16 % too bright.
         let tau_c = layers.tau + 0.5 * step_tau;
-        let reach = exp(-k * layers.tau) * per_channel_mean(k * step_tau) * length_m;
-        let reach_s = reach * s;
+        let kept = exp(-k * step_tau);
+        let reach_s = through * per_channel_mean(k * step_tau, kept) * step_tau;
+        let is_faint = largest(through) < FAINT;
+        let seen = sharp * exp(-step_tau);
+        layers.distance += (sharp - seen) * t;
+        sharp = seen;
+        through *= kept;
+        layers.tau += step_tau;
+        if is_faint {
+            if largest(through) < OPAQUE {
+                break;
+            }
+            continue;
+        }
 
         var single = Spectrum(0.0);
         var forward = Spectrum(0.0);
@@ -193,12 +210,6 @@ fn march(direction: vec3f) -> Layers {
         layers.forward += reach_s * albedo * forward;
         if params.residual_channels > 0u {
             layers.residual += reach_s * scatter * residual_of(p, direction);
-        }
-        let seen = exp(-layers.tau) * (1.0 - exp(-step_tau));
-        layers.distance += seen * t;
-        layers.tau += step_tau;
-        if largest(exp(-k * layers.tau)) < OPAQUE {
-            break;
         }
     }
     return layers;

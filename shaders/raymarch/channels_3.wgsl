@@ -1,7 +1,9 @@
 // What a march evaluates for each channel: here for three.
 
-fn per_channel_mean(x: Spectrum) -> Spectrum {
-    return vec3f(mean_transmittance(x.x), mean_transmittance(x.y), mean_transmittance(x.z));
+// (1 - exp(-x)) / x, where the exponential is known.
+fn per_channel_mean(x: Spectrum, exp_x: Spectrum) -> Spectrum {
+    let thin = vec3f(thin_transmittance(x.x), thin_transmittance(x.y), thin_transmittance(x.z));
+    return select((1.0 - exp_x) / max(x, vec3f(1e-3)), thin, x < vec3f(0.1));
 }
 
 fn peak_of(x: Spectrum, column: f32) -> Spectrum {
