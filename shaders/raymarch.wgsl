@@ -76,9 +76,7 @@ struct Pixel {
 @group(1) @binding(8) var blocks: texture_3d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
-// Where less than this is left of a ray, what lights it is not evaluated any more; where less than that,
-// neither is its optical depth, on which a bright sun behind may still depend.
-const FAINT: f32 = 1e-3;
+// Where less than this is left of a ray it ends.
 const OPAQUE: f32 = 1e-5;
 // The table of K: columns 255 sqrt(sin(theta/2)), rows 63 sqrt(x/60).
 const PEAK_SIZE: vec2f = vec2f(256.0, 64.0);
@@ -158,18 +156,11 @@ fn march(direction: vec3f) -> Layers {
         let tau_c = layers.tau + 0.5 * step_tau;
         let kept = exp(-k * step_tau);
         let reach_s = through * per_channel_mean(k * step_tau, kept) * step_tau;
-        let is_faint = largest(through) < FAINT;
         let seen = sharp * exp(-step_tau);
         layers.distance += (sharp - seen) * t;
         sharp = seen;
         through *= kept;
         layers.tau += step_tau;
-        if is_faint {
-            if largest(through) < OPAQUE {
-                break;
-            }
-            continue;
-        }
 
         var single = Spectrum(0.0);
         var forward = Spectrum(0.0);
@@ -210,6 +201,9 @@ fn march(direction: vec3f) -> Layers {
         layers.forward += reach_s * albedo * forward;
         if params.residual_channels > 0u {
             layers.residual += reach_s * scatter * residual_of(p, direction);
+        }
+        if largest(through) < OPAQUE {
+            break;
         }
     }
     return layers;

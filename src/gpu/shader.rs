@@ -2,8 +2,8 @@
 //!
 //! `#import "lib/phase.wgsl"` pastes a file once, textually. A name in braces is filled in from
 //! the stage's choices: `#import "lib/spectrum_{channels}.wgsl"` becomes `spectrum_1` or
-//! `spectrum_3`, `texture_storage_3d<{format}, write>` any format. In debug builds the files are read from the source folder each time, so that an
-//! edit shows at once; a release carries them.
+//! `spectrum_3`, `texture_storage_3d<{format}, write>` any format. In debug builds the files are read from
+//! the source folder each time, so that an edit shows at once; a release carries them.
 
 use std::borrow::Cow;
 

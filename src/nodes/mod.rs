@@ -9,6 +9,7 @@ use std::path::PathBuf;
 
 use crate::gpu::{Gpu, GpuError, Recorder};
 use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Value};
+use crate::wire::{Beams, Medium};
 
 mod camera;
 mod environment;
@@ -103,6 +104,21 @@ pub fn catalog() -> Catalog {
         std::sync::LazyLock::new(|| KINDS.iter().map(|kind| kind.spec).collect());
     Catalog(&SPECS)
 }
+
+/// The beams of an input, which must have gone through this medium.
+///
+/// # Errors
+/// Where they went through another one; what the device reports.
+fn beams_through(run: &Run, medium: &Medium) -> Result<Beams, NodeError> {
+    let parts = run.inputs.many::<Beams>("beams");
+    if parts.iter().any(|part| part.lattice != medium.lattice) {
+        return Err(NodeError::new(ELSEWHERE));
+    }
+    Ok(Beams::merge(run.gpu, &medium.lattice, &parts)?)
+}
+
+const ELSEWHERE: &str =
+    "beams or residual belong to another medium: wire the one that they were made for to medium";
 
 /// For a node that reads no files.
 fn no_files(_: &Params) -> Result<Vec<PathBuf>, NodeError> {

@@ -89,7 +89,8 @@ impl Lattice {
         let reach = if ratio == 1.0 { 1.5 * voxel_m } else { voxel_m + cell_m };
         let first_face = low - reach;
         let extent = (high + reach - first_face) / cell_m;
-        let occupied = extent.to_array().map(|n| (n - 1e-6).ceil() as usize);
+        // Beyond a million no device follows, and their product must stay a number: the field is refused.
+        let occupied = extent.to_array().map(|n| (n - 1e-6).ceil().min(1e6) as usize);
         let longest = occupied.into_iter().max().unwrap_or(1);
         let multiple = if longest < 200 { 16 } else { 32 };
         let center = first_face + 0.5 * cell_m;

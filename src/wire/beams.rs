@@ -37,6 +37,8 @@ pub struct Beams {
     pub tau: TauAtlas,
     /// Radiance from everywhere, which needs no beams [W/(m² sr)].
     pub ambient: [f64; 3],
+    /// The grid of the medium that they went through.
+    pub lattice: Lattice,
 }
 
 /// Optical depths at the corners of cells. One or two beams have a 32-bit texel each; of more, four share a
@@ -138,7 +140,12 @@ impl Beams {
     /// [`GpuError`] where the device has no room.
     pub fn none(gpu: &Gpu, lattice: &Lattice) -> Result<Self, GpuError> {
         let nowhere = Lattice { dims: [0; 3], ..lattice.clone() };
-        Ok(Self { beams: Vec::new(), tau: TauAtlas::new(gpu, &nowhere, 0)?, ambient: [0.0; 3] })
+        Ok(Self {
+            beams: Vec::new(),
+            tau: TauAtlas::new(gpu, &nowhere, 0)?,
+            ambient: [0.0; 3],
+            lattice: lattice.clone(),
+        })
     }
 
     /// All of `parts` as one; a single part is shared, not copied.
@@ -184,7 +191,7 @@ impl Beams {
             }
         }
         recorder.finish()?;
-        Ok(Self { beams, tau, ambient })
+        Ok(Self { beams, tau, ambient, lattice: lattice.clone() })
     }
 
     /// Beams with texels of their own, as one texel of four of another atlas.

@@ -4,14 +4,17 @@ use std::sync::Arc;
 
 use super::Channels;
 use crate::gpu::Texture;
+use crate::volume::Lattice;
 
 /// The residual field of a medium.
 #[derive(Clone)]
 pub struct Residual {
     /// phi [W/m²] and F [W/m²] of each cell in an Rgba32Float texel; channels stand along z.
     pub moments: Arc<Texture>,
+    /// The grid of the medium that was solved.
+    pub lattice: Lattice,
     /// Which channels they are.
     pub channels: Channels,
-    /// Power that entered and was left over, per channel, for the health check: in / (out + absorbed).
+    /// The last sweep's power in / (out + absorbed), per channel: 1 where it had settled.
     pub balance: [f64; 3],
 }

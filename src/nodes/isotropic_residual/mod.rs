@@ -9,10 +9,10 @@
 //! Inputs: a medium and its beams. Output: phi and F [W/m²] a cell and channel. Held against the f64
 //! oracle beside it, the slabs of adding–doubling, and the invariants of DESIGN 8.
 
-use super::{NodeKind, Run, no_files};
+use super::{NodeKind, Run, beams_through, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::optics::directions::LineSet;
-use crate::wire::{Beams, Channels, Medium};
+use crate::wire::{Channels, Medium};
 
 mod level;
 #[cfg(test)]
@@ -90,7 +90,7 @@ fn effort(run: &Run) -> Result<Effort, NodeError> {
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
-    let beams = Beams::merge(run.gpu, &medium.lattice, &run.inputs.many::<Beams>("beams"))?;
+    let beams = beams_through(run, medium)?;
     let channels = Channels::of(medium, &beams);
     let problem = level::Problem::new(medium, &channels, beams.ambient, effort(run)?.lines);
     let sources = sources::sources(run, medium, &beams, &channels, &problem)?;

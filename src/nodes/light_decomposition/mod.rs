@@ -57,7 +57,11 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     }
     if let Some(environment) = run.inputs.maybe::<Environment>("environment") {
         light.ambient = environment.minimum();
-        light.ordinates.extend(uniform::split(environment, run.params.i64("count") as usize));
+        let (ordinates, from_all_sides) = uniform::split(environment, run.params.i64("count") as usize);
+        light.ordinates.extend(ordinates);
+        for (ambient, radiance) in light.ambient.iter_mut().zip(from_all_sides) {
+            *ambient += radiance;
+        }
     }
     let bytes = (light.ordinates.len() * size_of::<Ordinate>()) as u64;
     Ok(vec![Value::new(PortType::Ordinates, bytes, light)])

@@ -13,10 +13,11 @@ use crate::light::Ordinate;
 use crate::light::environment::{Environment, Map};
 use crate::optics::spectrum::luminance;
 
-/// The ordinates of what an environment has beyond its minimum; black regions are left out.
-pub(super) fn split(environment: &Environment, count: usize) -> Vec<Ordinate> {
+/// The ordinates of what an environment has beyond its minimum, black regions left out, and the radiance of
+/// regions that shine from all sides alike: they have no direction, and join the ambient.
+pub(super) fn split(environment: &Environment, count: usize) -> (Vec<Ordinate>, [f64; 3]) {
     let Environment::Map(map) = environment else {
-        return Vec::new();
+        return Default::default();
     };
     let minimum = environment.minimum();
     let partition = Partition::new(count);
@@ -32,7 +33,13 @@ pub(super) fn split(environment: &Environment, count: usize) -> Vec<Ordinate> {
             }
             all
         });
-    sums.iter().filter_map(Region::ordinate).collect()
+    let mut from_all_sides = [0.0; 3];
+    for region in sums.iter().filter(|region| region.ordinate().is_none()) {
+        for (sum, e) in from_all_sides.iter_mut().zip(region.irradiance) {
+            *sum += e / (4.0 * PI);
+        }
+    }
+    (sums.iter().filter_map(Region::ordinate).collect(), from_all_sides)
 }
 
 fn sum_row(map: &Map, row: usize, minimum: [f64; 3], partition: &Partition) -> Vec<Region> {
@@ -70,7 +77,6 @@ impl Region {
     fn ordinate(&self) -> Option<Ordinate> {
         let mean = self.direction / self.weight;
         let a0 = mean.length();
-        // Light that comes from everywhere alike has no direction, and is the ambient's.
         (self.weight > 0.0 && a0 > 1e-9).then(|| Ordinate {
             direction: -mean / a0,
             irradiance: self.irradiance,
@@ -138,13 +144,14 @@ mod tests {
         let ambient = environment.minimum();
         let Environment::Map(pixels) = &environment else { unreachable!() };
         for count in [1, 2, 3, 7, 32, 1000] {
-            let ordinates = split(&environment, count);
+            let (ordinates, rest) = split(&environment, count);
             for (c, ambient) in ambient.into_iter().enumerate() {
                 let exact: f64 = (0..128)
                     .flat_map(|y| (0..256).map(move |x| (x, y)))
                     .map(|(x, y)| f64::from(pixels.texels[y * 256 + x][c]) * 1.5 * pixels.solid_angle(y))
                     .sum();
-                let kept: f64 = ordinates.iter().map(|o| o.irradiance[c]).sum::<f64>() + 4.0 * PI * ambient;
+                let kept: f64 =
+                    ordinates.iter().map(|o| o.irradiance[c]).sum::<f64>() + 4.0 * PI * (ambient + rest[c]);
                 // Sums of 3e4 terms in f64.
                 assert!((kept / exact - 1.0).abs() < 1e-11, "count {count}: {kept} {exact}");
             }
@@ -176,10 +183,22 @@ mod tests {
     #[test]
     fn one_hot_texel_is_one_ordinate() {
         let environment = map(|x, y| if (x, y) == (10, 20) { [1e5; 3] } else { [0.0; 3] });
-        let ordinates = split(&environment, 32);
+        let (ordinates, _) = split(&environment, 32);
         assert_eq!(ordinates.len(), 1);
         assert!((ordinates[0].a0 - 1.0).abs() < 1e-12);
-        assert_eq!(split(&map(|_, _| [0.0; 3]), 32), []);
-        assert_eq!(split(&Environment::Constant([1.0; 3]), 32), []);
+        assert_eq!(split(&map(|_, _| [0.0; 3]), 32), (vec![], [0.0; 3]));
+        assert_eq!(split(&Environment::Constant([1.0; 3]), 32), (vec![], [0.0; 3]));
+    }
+
+    #[test]
+    fn light_without_a_direction_is_not_lost() {
+        // Even around and about the equator: one region has no mean direction.
+        let environment = map(|_, y| [if (32..96).contains(&y) { 1.0 } else { 0.0 }; 3]);
+        let Environment::Map(pixels) = &environment else { unreachable!() };
+        let exact: f64 = (32..96).map(|y| 256.0 * 1.5 * pixels.solid_angle(y)).sum();
+        let (ordinates, rest) = split(&environment, 1);
+        let kept = ordinates.iter().map(|o| o.irradiance[0]).sum::<f64>() + 4.0 * PI * rest[0];
+        // Sums of 3e4 terms in f64.
+        assert!((kept / exact - 1.0).abs() < 1e-11, "{kept} {exact}");
     }
 }

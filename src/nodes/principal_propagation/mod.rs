@@ -25,7 +25,7 @@ static SPEC: NodeSpec = NodeSpec {
     outputs: &[PortSpec::new("beams", PortType::Beams, "the light in the medium")],
     params: &[ParamSpec::choice("scheme", &["auto", "scan", "walk"]).doc(
         "walk: from every corner to the light, exact but for its samples; scan: running sums along lines that follow the beam, \
-         its cost independent of the way through the medium; auto: walk where it is affordable.",
+         its cost independent of the way through the medium; auto: the cheaper one. A homogeneous shape needs neither: its depth is known.",
     )],
 };
 
@@ -48,7 +48,12 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let scans = match run.params.text("scheme") {
         "scan" => true,
         "walk" => false,
-        _ => scan::samples_of_a_walk(medium, &beams) > SAMPLES_OF_A_SCAN,
+        // The scan's lines stand half a cell apart: the device must hold twice the cells along an axis.
+        _ => {
+            let lines = 2 * medium.lattice.dims.into_iter().max().unwrap_or(0) + 3;
+            scan::samples_of_a_walk(medium, &beams) > SAMPLES_OF_A_SCAN
+                && lines <= run.gpu.max_texture_3d() as usize
+        }
     };
     // A shape in closed form needs no samples at all.
     let tau = if scans && medium.homogeneous.is_none() {
@@ -57,5 +62,9 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         walk::walk(run, medium, &beams)?
     };
     let bytes = tau.texture.bytes();
-    Ok(vec![Value::new(PortType::Beams, bytes, Beams { beams, tau, ambient: light.ambient })])
+    Ok(vec![Value::new(
+        PortType::Beams,
+        bytes,
+        Beams { beams, tau, ambient: light.ambient, lattice: medium.lattice.clone() },
+    )])
 }

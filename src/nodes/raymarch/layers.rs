@@ -13,6 +13,16 @@ mirror! {
     }
 }
 
+impl Pixel {
+    /// Whether all of its layers are.
+    pub(super) fn is_finite(&self) -> bool {
+        [self.beauty, self.single, self.forward, self.residual]
+            .as_flattened()
+            .iter()
+            .all(|value| value.is_finite())
+    }
+}
+
 /// The picture of these pixels, row by row.
 pub(super) fn image(width: usize, height: usize, pixels: &[Pixel]) -> Image {
     let three = |of: fn(&Pixel) -> &[f32; 4]| pixels.iter().flat_map(|p| of(p)[..3].to_vec()).collect();

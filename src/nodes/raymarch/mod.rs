@@ -6,7 +6,7 @@
 
 use glam::DMat3;
 
-use super::{NodeKind, Run, no_files};
+use super::{ELSEWHERE, NodeKind, Run, beams_through, no_files};
 use crate::camera::Camera;
 use crate::gpu::{Bind, Format, Gpu, GpuError, Texture};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
@@ -109,7 +109,10 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
     let camera: &Camera = run.inputs.one("camera");
     let residual = run.inputs.maybe::<Residual>("residual");
-    let beams = Beams::merge(gpu, &medium.lattice, &run.inputs.many::<Beams>("beams"))?;
+    let beams = beams_through(run, medium)?;
+    if residual.is_some_and(|residual| residual.lattice != medium.lattice) {
+        return Err(NodeError::new(ELSEWHERE));
+    }
     let backdrop = Backdrop::new(gpu, run.inputs.maybe("environment"), run.params.bool("background"))?;
 
     let channels = common_channels(Channels::of(medium, &beams), residual);
@@ -147,7 +150,15 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         recorder.dispatch(&bound, [camera.width, n_rows, 1]);
         run.finish(recorder)?;
         let read: Vec<layers::Pixel> = gpu.read_buffer(&pixels)?;
-        all.extend_from_slice(&read[..camera.width * n_rows]);
+        let read = &read[..camera.width * n_rows];
+        if let Some(idx) = read.iter().position(|pixel| !pixel.is_finite()) {
+            return Err(NodeError::new(format!(
+                "pixel ({}, {}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity or radiance",
+                idx % camera.width,
+                row + idx / camera.width
+            )));
+        }
+        all.extend_from_slice(read);
     }
     let image = layers::image(camera.width, camera.height, &all);
     let bytes = image.layers.values().map(|layer| size_of_val(layer.data.as_slice()) as u64).sum();

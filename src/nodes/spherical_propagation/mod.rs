@@ -45,5 +45,9 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         .collect::<Result<Vec<Beam>, NodeError>>()?;
     let tau = walk::walk(run, medium, &beams)?;
     let bytes = tau.texture.bytes();
-    Ok(vec![Value::new(PortType::Beams, bytes, Beams { beams, tau, ambient: [0.0; 3] })])
+    Ok(vec![Value::new(
+        PortType::Beams,
+        bytes,
+        Beams { beams, tau, ambient: [0.0; 3], lattice: medium.lattice.clone() },
+    )])
 }
