@@ -28,8 +28,6 @@ pub enum Bind<'a> {
     Texture(&'a Texture),
     /// A whole buffer.
     Buffer(&'a Buffer),
-    /// `bytes` of a buffer from `offset`, a multiple of 256.
-    Window(&'a Buffer, u64, u64),
     /// A sampler.
     Sampler(&'a Sampler),
 }
@@ -38,7 +36,7 @@ impl<'a> Bind<'a> {
     fn counted(&self) -> Option<Arc<Counted>> {
         match self {
             Bind::Texture(texture) => Some(Arc::clone(&texture.counted)),
-            Bind::Buffer(buffer) | Bind::Window(buffer, ..) => Some(Arc::clone(&buffer.counted)),
+            Bind::Buffer(buffer) => Some(Arc::clone(&buffer.counted)),
             Bind::Sampler(_) => None,
         }
     }
@@ -47,11 +45,6 @@ impl<'a> Bind<'a> {
         match *self {
             Bind::Texture(texture) => wgpu::BindingResource::TextureView(&texture.view),
             Bind::Buffer(buffer) => buffer.buffer.as_entire_binding(),
-            Bind::Window(buffer, offset, bytes) => wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &buffer.buffer,
-                offset,
-                size: std::num::NonZeroU64::new(bytes),
-            }),
             Bind::Sampler(sampler) => wgpu::BindingResource::Sampler(&sampler.0),
         }
     }
