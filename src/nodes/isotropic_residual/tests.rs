@@ -126,6 +126,7 @@ fn assert_solved(
     let name = match quality {
         Quality::Draft => "draft",
         Quality::Fast => "fast",
+        Quality::Thick => "thick",
         _ => "default",
     };
     let medium = scene.medium(gpu);
@@ -175,6 +176,13 @@ fn residuals_are_the_oracles_for_every_set_of_lines() {
             assert_solved(gpu, &format!("{dims:?}"), &scene, light, (quality, lines));
         }
     }
+}
+
+#[test]
+fn v_cycles_in_a_deep_white_medium_are_the_oracles() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { g: 0.3, albedo: [1.0; 3], ..Scene::new([16, 16, 32], Filling::Random, 40.0) };
+    assert_solved(gpu, "deep", &scene, (&suns(false)[..1], [0.1; 3]), (Quality::Thick, LineSet::Lines14));
 }
 
 #[test]
