@@ -2,6 +2,7 @@
 // batches of the same sweep gave.
 
 #import "isotropic_residual/batch.wgsl"
+#import "isotropic_residual/realizable.wgsl"
 
 @group(1) @binding(0) var<storage, read> mean_radiance: array<f32>;
 @group(1) @binding(1) var earlier: texture_3d<f32>;
@@ -29,7 +30,5 @@ fn gather(id: vec3u) -> vec4f {
 // The same once the sweep is complete: rebalanced, and |F| <= phi, which rounding can break where first
 // moments underflow.
 fn gather_balanced(id: vec3u, balance: f32) -> vec4f {
-    let sum = balance * gather(id);
-    let len = length(sum.yzw);
-    return vec4f(sum.x, sum.yzw * select(1.0, sum.x / len, len > sum.x));
+    return realizable(balance * gather(id));
 }
