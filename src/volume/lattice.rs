@@ -104,11 +104,6 @@ impl Lattice {
         }
     }
 
-    /// Number of cells.
-    pub fn n_cells(&self) -> usize {
-        self.dims.iter().product()
-    }
-
     /// From the world in meters to index coordinates.
     pub fn index_from_world(&self) -> DMat4 {
         self.world_from_index.inverse()

@@ -84,7 +84,9 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         wanted_cell_m: if run.params.i64("max_resolution") > 0 { f64::INFINITY } else { THICK / sigma_t_max },
         // The residual binds 16 bytes a cell at once.
         max_cells: (run.params.i64("max_cells") as usize).min(run.gpu.max_binding_bytes() as usize / 16),
-        max_axis: run.gpu.max_texture_3d() as usize / 3 - 1,
+        // The residual stacks three channels along z, and a beam's lines stand half a cell apart: of n cells
+        // 3 n and 2 n + 3 texels, and n is at least 16.
+        max_axis: run.gpu.max_texture_3d() as usize / 3,
     };
     let lattice = Lattice::fit(at(low), at(high), dense.world_from_index, fineness);
     let sigma_t = resample(run, &dense, density_scale, &lattice)?;

@@ -92,7 +92,7 @@ fn an_empty_grid_is_void() {
     let medium = output(gpu, "medium", json!({}), &[("volume", &volume(&empty))]);
     let medium: &Medium = medium.get();
     let found: Vec<f32> = gpu.read_texture(&medium.sigma_t).unwrap();
-    assert_eq!(found.len(), medium.lattice.n_cells());
+    assert_eq!(found.len(), medium.lattice.dims.iter().product::<usize>());
     assert!(found.iter().all(|sigma| *sigma == 0.0));
     assert_eq!(medium.sigma_t_max, 0.0);
 }
