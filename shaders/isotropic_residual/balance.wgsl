@@ -6,7 +6,7 @@ struct BalanceParams {
     level: Level,
     // Power that enters on all lines together for an inflow of 1 [W per W/(m2 sr)].
     entering: f32,
-    // 0: only record the sum, the factor is 1 (inside a V-cycle).
+    // 0: the factor is 1 (inside a V-cycle).
     rebalance: u32,
     // line_sums holds so many entries a channel.
     n_sums: u32,
@@ -45,7 +45,5 @@ fn isotropic_residual_balance(@builtin(local_invocation_id) local: vec3u, @built
         }
         let balanced = params.rebalance == 0u || out <= 0.0;
         balance[c] = select(source / max(out, 1e-37), 1.0, balanced);
-        balance[3u + c] = source;
-        balance[6u + c] = out;
     }
 }

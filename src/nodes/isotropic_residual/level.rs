@@ -222,7 +222,7 @@ pub(super) struct Level {
     pub(super) params: LevelParams,
     /// phi and F after the last sweep.
     pub(super) moments: Texture,
-    /// Factors of three channels; power in of three; power out and absorbed of three.
+    /// Factors of three channels.
     pub(super) balance: Buffer,
     layers: [usize; 3],
     n_channels: usize,
@@ -258,7 +258,7 @@ impl Level {
         let n_directions = problem.directions.len();
         let n_sums = params.n_threads as usize * n_directions;
         let moments = gpu.texture3("moments", layers, Format::Rgba32Float, REMEDY)?;
-        let balance = gpu.buffer_from("balance", &[1.0_f32; 12], REMEDY)?;
+        let balance = gpu.buffer_from("balance", &[1.0_f32; 3], REMEDY)?;
         let line_sums = gpu.buffer("powers of lines", 8 * (n_sums * problem.n_channels) as u64, REMEDY)?;
         let lobe_bytes = LOBE_BYTES * n_cells * scratch.channels_per_group as u64;
         let lobes = (0..problem.n_channels / scratch.channels_per_group)
