@@ -76,7 +76,7 @@ const MOST_MISSING: i64 = 1_000_000;
 
 impl FramesJson {
     fn find(path: &Path) -> anyhow::Result<Self> {
-        let Sequence::Numbered(files) = Sequence::find(path)? else {
+        let Sequence::Numbered { files, .. } = Sequence::find(path)? else {
             anyhow::bail!("{}: this is no sequence; name a folder or a pattern", path.display());
         };
         let (Some((first, _)), Some((last, _))) = (files.first_key_value(), files.last_key_value()) else {

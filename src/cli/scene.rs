@@ -153,6 +153,9 @@ fn choose(document: &mut Document, args: &Args) -> anyhow::Result<Vec<String>> {
         }
         if image_port(node).is_none() {
             let givers = list(document, |node| image_port(node).is_some());
+            if givers.is_empty() {
+                anyhow::bail!("--node '{name}' gives no image, nor does another node; add a raymarch");
+            }
             anyhow::bail!("--node '{name}' gives no image; those that do are {givers}");
         }
         if args.output.is_none() {
@@ -215,7 +218,7 @@ fn image_port(node: &Node) -> Option<&'static str> {
 fn list(document: &Document, is_meant: impl Fn(&Node) -> bool) -> String {
     let names = document.nodes.iter().filter(|(_, node)| is_meant(node));
     let names: Vec<&str> = names.map(|(name, _)| name.as_str()).collect();
-    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+    names.join(", ")
 }
 
 /// The path of a save_image whose parameters have been checked.

@@ -9,7 +9,12 @@ pub enum Sequence {
     /// Not numbered.
     Single(PathBuf),
     /// By their numbers.
-    Numbered(BTreeMap<i64, PathBuf>),
+    Numbered {
+        /// What names them, such as `cache/smoke_####.vdb`.
+        pattern: PathBuf,
+        /// Never empty.
+        files: BTreeMap<i64, PathBuf>,
+    },
 }
 
 /// What can be wrong with a path of frames.
@@ -35,12 +40,12 @@ pub enum SequenceError {
         first: String,
     },
     /// A frame that is not there.
-    #[error("no frame {frame} in {of}: there are {first} to {last}{gaps}")]
+    #[error("no frame {frame} in {pattern}: there are {first} to {last}{gaps}")]
     Frame {
         /// Asked for, in the sequence's own numbers.
         frame: i64,
-        /// Where.
-        of: String,
+        /// What names the frames.
+        pattern: PathBuf,
         /// First number.
         first: i64,
         /// Last number.
@@ -79,7 +84,12 @@ impl Sequence {
                 Some((number(digits)?, path))
             })
             .collect();
-        if files.is_empty() { Err(SequenceError::NoFit(path.to_owned())) } else { Ok(Self::Numbered(files)) }
+        let pattern = path.to_owned();
+        if files.is_empty() {
+            Err(SequenceError::NoFit(pattern))
+        } else {
+            Ok(Self::Numbered { pattern, files })
+        }
     }
 
     fn in_folder(folder: &Path) -> Result<Self, SequenceError> {
@@ -91,13 +101,15 @@ impl Sequence {
                 found.entry(format!("{}####.vdb", &stem[..start])).or_default().insert(frame, path);
             }
         }
-        match found.len() {
-            0 => Err(SequenceError::Empty(folder.to_owned())),
-            1 => Ok(Self::Numbered(found.into_values().next().unwrap_or_default())),
-            _ => Err(SequenceError::Several {
+        let names = found.keys().cloned().collect::<Vec<_>>().join(", ");
+        let n_found = found.len();
+        match found.into_iter().next() {
+            None => Err(SequenceError::Empty(folder.to_owned())),
+            Some((name, files)) if n_found == 1 => Ok(Self::Numbered { pattern: folder.join(name), files }),
+            Some((first, _)) => Err(SequenceError::Several {
                 folder: folder.to_owned(),
-                names: found.keys().cloned().collect::<Vec<_>>().join(", "),
-                first: folder.join(found.keys().next().map_or("", String::as_str)).display().to_string(),
+                names,
+                first: folder.join(first).display().to_string(),
             }),
         }
     }
@@ -114,9 +126,9 @@ impl Sequence {
         offset: i64,
         loops: bool,
     ) -> Result<PathBuf, SequenceError> {
-        let files = match self {
+        let (pattern, files) = match self {
             Self::Single(path) => return Ok(path.clone()),
-            Self::Numbered(files) => files,
+            Self::Numbered { pattern, files } => (pattern, files),
         };
         let (first, last) = (*files.keys().next().unwrap_or(&0), *files.keys().next_back().unwrap_or(&0));
         let start = first_frame.unwrap_or(first);
@@ -127,11 +139,7 @@ impl Sequence {
         }
         files.get(&wanted).cloned().ok_or_else(|| SequenceError::Frame {
             frame: wanted,
-            of: files
-                .values()
-                .next()
-                .map(|path| path.with_file_name("").display().to_string())
-                .unwrap_or_default(),
+            pattern: pattern.clone(),
             first,
             last,
             gaps: if files.len() as i64 == last - first + 1 { "" } else { ", some of them missing" },
@@ -178,7 +186,11 @@ mod tests {
             assert_eq!(name(Some(4), None, 0, false).unwrap(), "a_0004.vdb");
             assert_eq!(name(Some(1), Some(1), 1, false).unwrap(), "a_0004.vdb");
             assert_eq!(name(Some(7), None, 0, true).unwrap(), "a_0003.vdb");
-            assert!(name(Some(5), None, 0, false).unwrap_err().contains("3 to 6, some of them missing"));
+            let pattern = folder.path().join("a_####.vdb");
+            assert_eq!(
+                name(Some(5), None, 0, false).unwrap_err(),
+                format!("no frame 5 in {}: there are 3 to 6, some of them missing", pattern.display())
+            );
             assert!(name(Some(i64::MAX), None, i64::MAX, false).is_err());
         }
         assert!(matches!(Sequence::find(&folder.path().join("b.vdb")), Ok(Sequence::Single(_))));

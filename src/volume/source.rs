@@ -52,7 +52,7 @@ pub enum VolumeError {
     },
     /// Fog cannot be negative or undefined.
     #[error(
-        "grid '{name}' holds {value} at voxel {at:?}, but an extinction is finite and at least 0: convert level sets to fog, clean the grid"
+        "grid '{name}' holds {value:?} at voxel {at:?}, but an extinction is finite and at least 0: convert level sets to fog, clean the grid"
     )]
     Value {
         /// The grid.
@@ -63,7 +63,7 @@ pub enum VolumeError {
         at: [i32; 3],
     },
     /// Fog fills all of space.
-    #[error("grid '{name}' has the background {background}: a medium needs 0 outside of its active voxels")]
+    #[error("grid '{name}' has the background {background:?}: a medium needs 0 outside of its active voxels")]
     Background {
         /// The grid.
         name: String,

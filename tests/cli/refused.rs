@@ -158,6 +158,8 @@ fn graphs_with_no_or_several_outputs() {
     desk.write("dark.json", r#"{ "tyndall": 1, "nodes": { "sun": { "type": "sun" } } }"#);
     desk.run_blind(&["render", "dark.json", "-o", "x.exr"])
         .refused("error: no node of the graph gives an image; add a raymarch\n");
+    desk.run_blind(&["render", "dark.json", "--node", "sun", "-o", "x.exr"])
+        .refused("error: --node 'sun' gives no image, nor does another node; add a raymarch\n");
     if has_adapter() {
         desk.run(&["render", "none.json", "-o", "x.exr"]).done();
         desk.run(&["render", "both.json", "--node", "other", "-o", "y.exr"]).done();

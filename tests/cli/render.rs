@@ -64,7 +64,7 @@ fn frames_are_kept_and_failures_counted() {
     desk.write("p/f_04.png", "kept");
     let ran = render("1-5", "p/f_##.png");
     assert_eq!(ran.code, Some(1));
-    let why = "g.json: frame 3: node 'ball': no frame 3 in cache/: there are 1 to 5, some of them missing";
+    let why = "g.json: frame 3: node 'ball': no frame 3 in cache/a_####.vdb: there are 1 to 5, some of them missing";
     let lines: Vec<&str> = ran.stderr.lines().collect();
     assert!(lines.len() == 2 && lines[0] == why, "{}", ran.stderr);
     assert!(lines[1].starts_with("g.json: frame 5: node 'ball': cache/a_0005.vdb: "), "{}", ran.stderr);

@@ -73,7 +73,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let sigma_t_max = density_scale * f64::from(largest);
     if !(sigma_t_max as f32).is_finite() {
         return Err(NodeError::new(format!(
-            "density_scale {density_scale} times the largest density {largest} is no finite extinction: lower density_scale"
+            "density_scale {density_scale:?} times the largest density {largest:?} is no finite extinction: lower density_scale"
         )));
     }
     let (low, high) = dense.occupied().unwrap_or(([0; 3], [0; 3]));
