@@ -25,7 +25,7 @@ const INTERRUPTED: u8 = 130;
 /// Render a graph to a picture, or each frame of a sequence.
 ///
 /// Exit code 0: done, 1: some frames failed, 2: wrong usage or input, 130: Ctrl-C. Pictures appear whole
-/// or not at all; started again, a sequence keeps the frames that are there.
+/// or not at all; started again, a sequence keeps the frames that are there, whatever they were made with.
 #[derive(clap::Args)]
 pub struct Args {
     /// The graph, a JSON file.
@@ -43,6 +43,10 @@ pub struct Args {
     /// Frames to render: 7, 1-100 or 1-100x2 (every second); sets `frame` of every load_vdb.
     #[arg(long, value_name = "FIRST-LAST[xSTEP]")]
     pub frames: Option<Frames>,
+    /// Render the frames whose files are there again; without it they are kept, whatever they were made
+    /// with.
+    #[arg(long, requires = "frames")]
+    pub overwrite: bool,
     /// Size of every camera, in pixels.
     #[arg(long, value_name = "WxH", value_parser = parse_size)]
     pub size: Option<[u32; 2]>,
@@ -134,18 +138,19 @@ impl Job<'_> {
         }
     }
 
-    /// All frames; those whose files are there are kept.
+    /// All frames; those whose files are there are kept, unless they are to be overwritten.
     fn sequence(&mut self, scene: &Scene, frames: &Frames) -> anyhow::Result<u8> {
         let start = Instant::now();
-        let is_there = |outputs: &[Output]| outputs.iter().all(|output| output.path.is_file());
-        let missing = frames.0.iter().filter(|frame| !is_there(&scene.outputs_of(**frame)));
+        let overwrite = self.args.overwrite;
+        let is_kept = |outputs: &[Output]| !overwrite && outputs.iter().all(|output| output.path.is_file());
+        let missing = frames.0.iter().filter(|frame| !is_kept(&scene.outputs_of(**frame)));
         let mut progress = Progress::new(missing.count() * n_runs(&scene.document, &scene.outputs));
         let (mut n_written, mut n_kept, mut n_failed) = (0, 0, 0);
         let mut interrupted = false;
         for frame in &frames.0 {
             let outputs = scene.outputs_of(*frame);
             // Asked again, because another machine may share the work.
-            if is_there(&outputs) {
+            if is_kept(&outputs) {
                 n_kept += 1;
                 let paths: Vec<String> =
                     outputs.iter().map(|output| output.path.display().to_string()).collect();
@@ -171,7 +176,9 @@ impl Job<'_> {
             }
         }
         let secs = start.elapsed().as_secs_f64();
-        progress.print(&format!("{n_written} written, {n_kept} kept, {n_failed} failed, {secs:.2} s"))?;
+        let again = if n_kept > 0 { " (--overwrite renders them again)" } else { "" };
+        progress
+            .print(&format!("{n_written} written, {n_kept} kept{again}, {n_failed} failed, {secs:.2} s"))?;
         drop(progress);
         Ok(match () {
             () if interrupted => {

@@ -71,7 +71,8 @@ fn frames_are_kept_and_failures_counted() {
     let lines: Vec<&str> = ran.stdout.lines().collect();
     assert!(lines[0].starts_with("frame 1: p/f_01.png: 32x32, "), "{}", ran.stdout);
     assert_eq!(lines[2], "frame 4: p/f_04.png is there, kept");
-    assert!(lines.len() == 4 && lines[3].starts_with("2 written, 1 kept, 2 failed, "), "{}", ran.stdout);
+    let counts = "2 written, 1 kept (--overwrite renders them again), 2 failed, ";
+    assert!(lines.len() == 4 && lines[3].starts_with(counts), "{}", ran.stdout);
     assert_eq!(fs::read(desk.path("p/f_04.png")).unwrap(), b"kept");
     let stats = desk.json("s.json");
     let frames = stats["frames"].as_array().unwrap();
@@ -86,6 +87,11 @@ fn frames_are_kept_and_failures_counted() {
     assert_eq!([&frames[0]["nodes"], &frames[1]["nodes"], &stats["nodes"]].map(sun), [false, true, false]);
 
     assert_eq!(render("1-4x3", "p/f_##.png").done().lines().count(), 3);
+    let again = ["render", "g.json", "--frames", "4", "-o", "p/f_##.png", "--overwrite"];
+    let text = desk.run(&again).done();
+    assert!(text.lines().nth(1).unwrap().starts_with("1 written, 0 kept, 0 failed, "), "{text}");
+    assert_ne!(fs::read(desk.path("p/f_04.png")).unwrap(), b"kept");
+    assert_eq!(desk.run(&["render", "g.json", "--overwrite"]).code, Some(2), "it is for frames");
     // Without a place for the number it stands before the ending.
     render("1-2", "q.exr").done();
     assert!(desk.path("q_0001.exr").is_file() && desk.path("q_0002.exr").is_file());
