@@ -50,6 +50,9 @@ static SPEC: NodeSpec = NodeSpec {
 
 /// Optical depth of a cell over which it is split (DESIGN 6.3: 12.9 % error at 1.4, 2.9 % at 0.7).
 const THICK: f64 = 0.7;
+/// A cell takes one sample a voxel along each axis, up to this many: a thread then reads 2 million voxels,
+/// and drivers stop what runs for seconds.
+const MOST_SAMPLES: f64 = 64.0;
 const REMEDY: &str = "lower medium.max_resolution";
 
 mirror! {
@@ -118,20 +121,15 @@ fn homogeneous(volume: &Volume, lattice: &Lattice) -> Option<Homogeneous> {
 /// sigma_t at the cells of a lattice.
 fn resample(run: &Run, dense: &Dense, density_scale: f64, lattice: &Lattice) -> Result<Texture, NodeError> {
     let gpu = run.gpu;
+    let n_sub = samples_along_cell(run.params.i64("max_resolution"), dense, lattice)?;
     let voxels =
         gpu.texture3_from("the grid's voxels", dense.dims, Format::R32Float, &dense.values, "crop the grid")?;
     let sigma_t = gpu.texture3("extinction", lattice.dims, Format::R32Float, REMEDY)?;
-    let voxel_from_cell: DMat4 = dense.world_from_index.inverse() * lattice.world_from_index;
-    let reach = [voxel_from_cell.x_axis, voxel_from_cell.y_axis, voxel_from_cell.z_axis]
-        .map(|axis| axis.truncate().abs().max_element())
-        .into_iter()
-        .fold(0.0, f64::max);
-    let rows = voxel_from_cell.transpose();
+    let rows = voxel_from_cell(dense, lattice).transpose();
     let params = MediumParams {
         voxel_from_cell: [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.as_vec4().to_array()),
         dims: lattice.dims.map(|n| n as u32),
-        // A cell larger than a voxel takes a point in every voxel that it covers.
-        n_sub: (reach - 1e-6).ceil().clamp(1.0, 64.0) as u32,
+        n_sub,
         density_scale: density_scale as f32,
         pad_0: 0,
         pad_1: 0,
@@ -143,6 +141,34 @@ fn resample(run: &Run, dense: &Dense, density_scale: f64, lattice: &Lattice) -> 
     recorder.dispatch(&bound, lattice.dims);
     run.finish(recorder)?;
     Ok(sigma_t)
+}
+
+fn voxel_from_cell(dense: &Dense, lattice: &Lattice) -> DMat4 {
+    dense.world_from_index.inverse() * lattice.world_from_index
+}
+
+/// A cell larger than a voxel takes a sample in every voxel that it covers.
+fn samples_along_cell(max_resolution: i64, dense: &Dense, lattice: &Lattice) -> Result<u32, NodeError> {
+    let map = voxel_from_cell(dense, lattice);
+    let reach = [map.x_axis, map.y_axis, map.z_axis]
+        .map(|axis| axis.truncate().abs().max_element())
+        .into_iter()
+        .fold(0.0, f64::max);
+    let samples = (reach - 1e-6).ceil().max(1.0);
+    if samples <= MOST_SAMPLES {
+        return Ok(samples as u32);
+    }
+    // Cells shrink as max_resolution grows; without it only a map that shears the voxels gets here.
+    let remedy = match max_resolution {
+        0 => "give the volume a map that shears its voxels less".to_owned(),
+        n => format!(
+            "raise max_resolution from {n} to {:.0} or more",
+            (n as f64 * reach / MOST_SAMPLES).ceil()
+        ),
+    };
+    Err(NodeError::new(format!(
+        "a cell is {samples:?} voxels long, at most {MOST_SAMPLES} are sampled: {remedy}"
+    )))
 }
 
 #[cfg(test)]

@@ -109,6 +109,25 @@ fn extinctions_that_are_not_finite_are_refused() {
 }
 
 #[test]
+fn cells_of_too_many_voxels_are_refused() {
+    let Some(gpu) = gpu() else { return };
+    let row = volume(&Dense { values: vec![1.0; 200], ..dense([200, 1, 1], DMat4::IDENTITY) });
+    let cells_of = |n: usize| run(gpu, "medium", json!({ "max_resolution": n }), &[("volume", &row)]);
+    assert_eq!(
+        cells_of(2).unwrap_err().to_string(),
+        "a cell is 100.0 voxels long, at most 64 are sampled: raise max_resolution from 2 to 4 or more"
+    );
+    // What the message says is enough.
+    assert!(cells_of(4).is_ok() && cells_of(3).is_err());
+    // Voxels of which two edges nearly fall together.
+    let mut sheared = DMat4::IDENTITY;
+    sheared.y_axis = DVec3::new(1.0, 1e-3, 0.0).extend(0.0);
+    let sheared = volume(&dense([2, 2, 2], sheared));
+    let error = run(gpu, "medium", json!({}), &[("volume", &sheared)]).unwrap_err().to_string();
+    assert!(error.ends_with("give the volume a map that shears its voxels less"), "{error}");
+}
+
+#[test]
 fn layouts_are_those_of_the_shader() {
     assert_layout::<MediumParams>("medium.wgsl", "MediumParams", &[]);
 }
