@@ -138,7 +138,7 @@ struct PortJson {
 #[derive(Serialize)]
 struct ParamJson {
     name: &'static str,
-    /// float, int, bool, text, choice, path, out_path, vector, rgb, direction, record.
+    /// float, int, int_choice, bool, text, choice, path, out_path, vector, rgb, direction, record.
     #[serde(rename = "type")]
     kind: &'static str,
     unit: &'static str,
@@ -152,7 +152,7 @@ struct ParamJson {
     /// What a slider spans.
     soft: Option<(f64, f64)>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    choices: Option<&'static [&'static str]>,
+    choices: Option<Json>,
     #[serde(skip_serializing_if = "Option::is_none")]
     length: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -189,7 +189,8 @@ impl ParamJson {
             ParamKind::Int => ("int", None, None, None),
             ParamKind::Bool => ("bool", None, None, None),
             ParamKind::Text => ("text", None, None, None),
-            ParamKind::Choice(choices) => ("choice", Some(choices), None, None),
+            ParamKind::IntChoice(choices) => ("int_choice", Some(choices.into()), None, None),
+            ParamKind::Choice(choices) => ("choice", Some(choices.into()), None, None),
             ParamKind::Path => ("path", None, None, None),
             ParamKind::OutPath => ("out_path", None, None, None),
             ParamKind::Vector(length) => ("vector", None, Some(length), None),

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json};
 
-use super::spec::{Default, ParamKind, ParamSpec};
+use super::spec::{Default, ParamKind, ParamSpec, list};
 use super::suggest::did_you_mean;
 
 /// Validated parameters, in the order of the spec.
@@ -231,6 +231,10 @@ pub(super) fn parse(
             in_limits(field, spec, json)?;
             Ok(ParamValue::Int(whole))
         }
+        (ParamKind::IntChoice(choices), Json::Number(number)) => match whole(number) {
+            Some(chosen) if choices.contains(&chosen) => Ok(ParamValue::Int(chosen)),
+            _ => refuse(format!("{field} is {number}; allowed are {}", list(choices))),
+        },
         (ParamKind::Bool, Json::Bool(b)) => Ok(ParamValue::Bool(*b)),
         (ParamKind::Text, Json::String(text)) => Ok(ParamValue::Text(text.clone())),
         (ParamKind::Choice(choices), Json::String(text)) => {

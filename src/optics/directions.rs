@@ -49,7 +49,7 @@ impl LineSet {
     pub const ALL: [Self; 4] = [Self::Lines8, Self::Lines14, Self::Lines26, Self::Lines50];
 
     /// Number of directions.
-    pub fn count(self) -> usize {
+    pub const fn count(self) -> usize {
         match self {
             Self::Lines8 => 8,
             Self::Lines14 => 14,

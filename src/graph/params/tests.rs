@@ -5,6 +5,7 @@ use super::*;
 const ALL: &[ParamSpec] = &[
     ParamSpec::float("g", 0.5).between(-1.0, 1.0).open(),
     ParamSpec::int("count", 32).between(1.0, 64.0),
+    ParamSpec::int_choice("lines", &[14, 26, 50]),
     ParamSpec::bool("on", true),
     ParamSpec::text("grid", "density"),
     ParamSpec::choice("scheme", &["auto", "scan", "walk"]),
@@ -32,6 +33,7 @@ fn defaults_are_filled_in() {
     let params = Params::defaults(ALL).unwrap();
     assert_eq!(params.f64("g"), 0.5);
     assert_eq!(params.i64("count"), 32);
+    assert_eq!(params.i64("lines"), 14);
     assert!(params.bool("on"));
     assert_eq!(params.text("grid"), "density");
     assert_eq!(params.text("scheme"), "auto");
@@ -87,6 +89,9 @@ fn wrong_forms() {
         (json!({"g": null}), "g is null; write a number, -1 < value < 1"),
         (json!({"count": 1.5}), "count is 1.5; write a whole number, 1..=64"),
         (json!({"count": 1e30}), "count is 1e+30; write a whole number, 1..=64"),
+        (json!({"lines": 15}), "lines is 15; allowed are 14, 26, 50"),
+        (json!({"lines": 26.5}), "lines is 26.5; allowed are 14, 26, 50"),
+        (json!({"lines": "26"}), "lines is \"26\"; write one of 14, 26, 50"),
         (json!({"on": 1}), "on is 1; write true or false"),
         (json!({"grid": 5}), "grid is 5; write a string"),
         (json!({"scheme": true}), "scheme is true; write one of auto, scan, walk"),
@@ -132,7 +137,7 @@ fn all_problems_at_once() {
     assert_eq!(
         found,
         [
-            "unknown parameter 'gg'; did you mean 'g'? allowed are g, count, on, grid, scheme, file, \
+            "unknown parameter 'gg'; did you mean 'g'? allowed are g, count, lines, on, grid, scheme, file, \
              save, window, albedo, up, emission",
             "albedo[0] = 1.2 is outside 0..=1; the default is [1,1,1]",
             "albedo[2] = -3 is outside 0..=1; the default is [1,1,1]",

@@ -35,6 +35,8 @@ pub enum ParamKind {
     Float,
     /// A whole number.
     Int,
+    /// One of these whole numbers.
+    IntChoice(&'static [i64]),
     /// true or false.
     Bool,
     /// A string.
@@ -102,6 +104,11 @@ impl ParamSpec {
     /// A whole number.
     pub const fn int(name: &'static str, default: i64) -> Self {
         Self::new(name, ParamKind::Int, Default::Int(default))
+    }
+
+    /// One of these whole numbers, the first by default.
+    pub const fn int_choice(name: &'static str, choices: &'static [i64]) -> Self {
+        Self::new(name, ParamKind::IntChoice(choices), Default::Int(choices[0]))
     }
 
     /// true or false.
@@ -223,6 +230,7 @@ impl ParamSpec {
         let mut form = match self.kind {
             ParamKind::Float => "a number".to_owned(),
             ParamKind::Int => "a whole number".to_owned(),
+            ParamKind::IntChoice(choices) => format!("one of {}", list(choices)),
             ParamKind::Bool => "true or false".to_owned(),
             ParamKind::Text => "a string".to_owned(),
             ParamKind::Choice(choices) => format!("one of {}", choices.join(", ")),
@@ -260,6 +268,11 @@ impl Default {
             Default::Floats(values) => Some(numbers(values)),
         }
     }
+}
+
+/// `0, 8, 14`.
+pub(in crate::graph) fn list(numbers: &[i64]) -> String {
+    numbers.iter().map(i64::to_string).collect::<Vec<_>>().join(", ")
 }
 
 /// A number as people write it: `1`, not `1.0`.
@@ -331,6 +344,7 @@ mod tests {
         assert_eq!(form(ParamSpec::float("x", 1.0).below(2.0)), "a number, value < 2");
         assert_eq!(form(ParamSpec::float("x", 1.0).above(0.0).at_most(1.0)), "a number, 0 < value <= 1");
         assert_eq!(form(ParamSpec::choice("x", KINDS)), "one of sphere, box");
+        assert_eq!(form(ParamSpec::int_choice("x", &[0, 8, 14])), "one of 0, 8, 14");
         assert_eq!(form(ParamSpec::path("x").or_null()), "a path as a string, or null");
         assert_eq!(form(ParamSpec::vector("x", &[30.0, 70.0])), "2 numbers in brackets");
         assert_eq!(form(GLOW), "an object with a, or null");

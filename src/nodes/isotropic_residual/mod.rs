@@ -40,10 +40,21 @@ static SPEC: NodeSpec = NodeSpec {
             "Sweeps: draft 1 on the finest grid and 4 on coarser ones, along 8 directions; fast 1 and 8; default 4 and 16; thick: \
              V-cycles, for media that are both deep and white; reference: until the field changes by less than 1e-5.",
         ),
-        ParamSpec::int("directions", 0).between(0.0, 50.0).doc("Directions of the lines: 8, 14, 26 or 50; 0 lets the quality choose."),
-        ParamSpec::int("sweeps", 0).between(0.0, 10000.0).soft(0.0, 64.0).doc("Sweeps on the finest grid; 0 lets the quality choose."),
-        ParamSpec::int("coarse_sweeps", 0).between(0.0, 10000.0).soft(0.0, 64.0).doc("Sweeps on each coarser grid; 0 lets the quality choose."),
+        ParamSpec::int_choice("directions", &DIRECTIONS).doc("Directions of the lines; 0 lets the quality choose."),
+        ParamSpec::int("sweeps", 0).between(0.0, 10000.0).soft(0.0, 64.0).doc("Sweeps on the finest grid; 0 lets the quality choose. Not for thick."),
+        ParamSpec::int("coarse_sweeps", 0).between(0.0, 10000.0).soft(0.0, 64.0).doc("Sweeps on each coarser grid; 0 lets the quality choose. Not for thick."),
     ],
+};
+
+/// 0, and the sets of lines that there are.
+const DIRECTIONS: [i64; 1 + LineSet::ALL.len()] = {
+    let mut counts = [0; 1 + LineSet::ALL.len()];
+    let mut idx = 0;
+    while idx < LineSet::ALL.len() {
+        counts[idx + 1] = LineSet::ALL[idx].count() as i64;
+        idx += 1;
+    }
+    counts
 };
 
 /// How much work the cascade does.
@@ -77,9 +88,14 @@ fn effort(run: &Run) -> Result<Effort, NodeError> {
         0 => chosen,
         asked => asked as usize,
     };
-    let directions = or("directions", directions);
-    let lines = LineSet::from_count(directions)
-        .ok_or_else(|| NodeError::new(format!("directions = {directions}: choose 8, 14, 26 or 50, or 0")))?;
+    let given = ["sweeps", "coarse_sweeps"].into_iter().find(|name| run.params.i64(name) > 0);
+    if let (Kind::Thick, Some(name)) = (kind, given) {
+        return Err(NodeError::new(format!(
+            "{name} = {}: quality thick has V-cycles of its own, leave it at 0 or choose another quality",
+            run.params.i64(name)
+        )));
+    }
+    let lines = LineSet::from_count(or("directions", directions)).expect("a choice of the parameter");
     Ok(Effort {
         lines,
         sweeps: or("sweeps", sweeps),
@@ -90,11 +106,12 @@ fn effort(run: &Run) -> Result<Effort, NodeError> {
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
+    let effort = effort(run)?;
     let beams = beams_through(run, medium)?;
     let channels = Channels::of(medium, &beams);
-    let problem = level::Problem::new(medium, &channels, beams.ambient, effort(run)?.lines);
+    let problem = level::Problem::new(medium, &channels, beams.ambient, effort.lines);
     let sources = sources::sources(run, medium, &beams, &channels, &problem)?;
-    let residual = solver::solve(run, medium, sources, &problem, effort(run)?, channels, level::BATCH_BYTES)?;
+    let residual = solver::solve(run, medium, sources, &problem, effort, channels, level::BATCH_BYTES)?;
     let bytes = residual.moments.bytes();
     Ok(vec![Value::new(PortType::Residual, bytes, residual)])
 }

@@ -11,7 +11,7 @@ use crate::nodes::principal_propagation::oracle::mean_irradiance;
 use crate::nodes::spherical_propagation::oracle::mean_irradiance_point;
 use crate::nodes::testing::{
     Filling, Scene, assert_close, assert_layout, flat, gpu, largest, layers, oracle_light, output, point,
-    states, sun, taus, with_run,
+    run, states, sun, taus, with_run,
 };
 use crate::optics::directions::LineSet;
 use crate::volume::field::Field;
@@ -333,6 +333,20 @@ fn packs_of_beams_beyond_a_column_are_found() {
     let expected = oracle_sources(&scene, 0, beams.get(), &taus);
     let found: Vec<f64> = gpu_sources(gpu, &medium, &beams)[0].data.iter().map(|q| q.x).collect();
     assert_close("q0", &found, &expected.q0.data, 1e-5, 1e-12);
+}
+
+#[test]
+fn v_cycles_take_no_number_of_sweeps() {
+    let Some(gpu) = gpu() else { return };
+    let medium = Scene::new([3, 3, 3], Filling::Random, 1.0).medium(gpu);
+    for name in ["sweeps", "coarse_sweeps"] {
+        let solve = |quality: &str| {
+            run(gpu, "isotropic_residual", json!({ "quality": quality, name: 3 }), &[("medium", &medium)])
+        };
+        let error = solve("thick").unwrap_err().to_string();
+        assert!(error.starts_with(&format!("{name} = 3: quality thick")), "{error}");
+        assert!(solve("default").is_ok());
+    }
 }
 
 #[test]
