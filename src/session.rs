@@ -5,12 +5,12 @@
 
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::time::{Instant, UNIX_EPOCH};
+use std::time::Instant;
 
 use crate::gpu::{AdapterChoice, Gpu, GpuError, shader_names, shader_text};
 use crate::graph::{
-    Cache, CancelToken, Document, Evaluation, Event, Host, Inputs, NodeError, NodeJob, Outputs, Plan, Target,
-    evaluate,
+    Cache, CancelToken, Document, Evaluation, Event, FileState, Host, Inputs, NodeError, NodeJob, Outputs,
+    ParamKind, Plan, Target, evaluate,
 };
 use crate::nodes::{self, Run};
 
@@ -121,13 +121,8 @@ impl Host for NodeHost<'_> {
         let kind = nodes::kind(job.spec.id).expect("the plan holds kinds of the catalog");
         let mut identity = self.shaders.to_vec();
         for path in (kind.files)(job.params)? {
-            identity.extend_from_slice(path.as_os_str().as_encoded_bytes());
             // A file that is not there is the node's to report.
-            if let Ok(found) = std::fs::metadata(&path) {
-                let modified = found.modified().ok().and_then(|time| time.duration_since(UNIX_EPOCH).ok());
-                identity.extend_from_slice(&found.len().to_le_bytes());
-                identity.extend_from_slice(&modified.map_or(0, |time| time.as_nanos()).to_le_bytes());
-            }
+            identity.extend(FileState::of(&path).to_bytes());
         }
         Ok(identity)
     }
@@ -138,7 +133,9 @@ impl Host for NodeHost<'_> {
             Run { params: job.params, inputs, gpu: self.gpu, cancel: job.cancel, gpu_ms: Default::default() };
         let values = (kind.run)(&run)?;
         self.gpu_ms.borrow_mut().insert(job.name.to_owned(), run.gpu_ms.get());
-        Ok(Outputs::new(values))
+        let written = job.spec.params.iter().filter(|param| matches!(param.kind, ParamKind::OutPath));
+        let written = written.map(|param| FileState::of(job.params.path(param.name)));
+        Ok(Outputs::new(values).with_written(written.collect::<Vec<_>>()))
     }
 }
 

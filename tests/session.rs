@@ -4,7 +4,7 @@ mod common;
 
 use std::path::Path;
 
-use tyndall::graph::{CancelToken, Document, Event, Target};
+use tyndall::graph::{CancelToken, Document, End, Event, Node, Target, Wire};
 use tyndall::nodes;
 use tyndall::session::{Session, Solved};
 
@@ -73,6 +73,38 @@ fn a_changed_file_is_read_again() {
     let later = std::time::SystemTime::now() + std::time::Duration::from_secs(5);
     std::fs::File::options().write(true).open(&path).unwrap().set_modified(later).unwrap();
     assert!(ran(&solve(&mut session, &document)).contains(&"cloud"));
+}
+
+#[test]
+fn a_picture_is_written_again_only_where_it_changed() {
+    let Some(mut session) = common::session() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("picture.exr");
+    let mut document = document();
+    let node = Node { type_id: "save_image".to_owned(), params: Default::default() };
+    document.nodes.insert("save".to_owned(), node);
+    let end = |node: &str| End { node: node.to_owned(), port: "image".to_owned() };
+    document.wires.push(Wire { from: end("march"), to: end("save") });
+    document.set(nodes::catalog(), "save.path", path.to_str().unwrap()).unwrap();
+    let nothing = [] as [&str; 0];
+
+    solve(&mut session, &document);
+    let bright = std::fs::read(&path).unwrap();
+    assert_eq!(ran(&solve(&mut session, &document)), nothing);
+    std::fs::write(&path, "somebody else's").unwrap();
+    assert_eq!(ran(&solve(&mut session, &document)), ["save"]);
+    assert_eq!(std::fs::read(&path).unwrap(), bright);
+    std::fs::remove_file(&path).unwrap();
+    assert_eq!(ran(&solve(&mut session, &document)), ["save"]);
+    assert_eq!(ran(&solve(&mut session, &document)), nothing);
+
+    // Another picture in the same place, and back: the first is found in the cache, its file is not.
+    document.set(nodes::catalog(), "sun.irradiance", "0.1").unwrap();
+    solve(&mut session, &document);
+    assert_ne!(std::fs::read(&path).unwrap(), bright);
+    document.nodes["sun"].params.clear();
+    assert_eq!(ran(&solve(&mut session, &document)), ["save"]);
+    assert_eq!(std::fs::read(&path).unwrap(), bright);
 }
 
 #[test]

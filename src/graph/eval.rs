@@ -2,7 +2,8 @@
 //!
 //! An error belongs to its node; what reads it, directly or not, is skipped, everything else goes on. It
 //! stops between nodes, and a node may ask the token between its stages; what was finished before stays
-//! in the cache. A node without outputs is there for its effect: it always runs and is never cached.
+//! in the cache. A node that writes a file runs again where the file is no longer as it left it. A node
+//! without outputs is there for its effect: it always runs and is never cached.
 //! Values live until the evaluation is dropped. Tested with toy nodes that count their runs.
 
 use std::time::Instant;
@@ -166,7 +167,8 @@ fn run_job(
     let node = NodeJob { name, spec, params: &work.params, cancel };
     let identity = host.identity(&node)?;
     let key = Key::new(spec, &work.params, &input_keys, &identity);
-    let found = cache.get(&key);
+    // A file that somebody changed or removed is written again.
+    let found = cache.get(&key).filter(Outputs::are_current);
     let cached = found.is_some();
     let mut cpu_ms = 0.0;
     let outputs = match found {

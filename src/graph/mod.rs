@@ -12,6 +12,7 @@ pub mod check;
 pub mod document;
 pub mod edit;
 pub mod eval;
+pub mod file;
 pub mod key;
 mod node;
 pub mod params;
@@ -30,6 +31,7 @@ pub use edit::SetError;
 pub use eval::{
     CancelToken, Evaluation, Event, Host, Inputs, NodeError, NodeJob, Outcome, Outputs, evaluate,
 };
+pub use file::FileState;
 pub use key::Key;
 pub use params::{ParamProblem, ParamValue, Params};
 pub use plan::{Job, Plan, Source, Target, Work};

@@ -9,6 +9,7 @@ use std::fmt;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use super::file::FileState;
 use super::params::Params;
 use super::spec::NodeSpec;
 use super::value::Value;
@@ -82,22 +83,35 @@ impl Inputs {
 
 /// Values by output, in the order of the spec.
 #[derive(Debug, Clone)]
-pub struct Outputs(Arc<[Value]>);
+pub struct Outputs {
+    values: Arc<[Value]>,
+    written: Arc<[FileState]>,
+}
 
 impl Outputs {
     /// One value for each output.
     pub fn new(values: impl Into<Arc<[Value]>>) -> Self {
-        Self(values.into())
+        Self { values: values.into(), written: Arc::default() }
+    }
+
+    /// And the files that the node wrote, as it left them.
+    pub fn with_written(self, files: impl Into<Arc<[FileState]>>) -> Self {
+        Self { written: files.into(), ..self }
     }
 
     /// One value for each output.
     pub fn values(&self) -> &[Value] {
-        &self.0
+        &self.values
+    }
+
+    /// Whether every file that the node wrote is still as the node left it.
+    pub fn are_current(&self) -> bool {
+        self.written.iter().all(FileState::holds)
     }
 
     /// Memory of all values, in bytes.
     pub fn bytes(&self) -> u64 {
-        let sizes = self.0.iter().map(|value| value.bytes);
+        let sizes = self.values.iter().map(|value| value.bytes);
         sizes.fold(0, u64::saturating_add)
     }
 }

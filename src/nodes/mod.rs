@@ -56,7 +56,7 @@ pub static KINDS: &[NodeKind] = &[
 pub struct NodeKind {
     /// What it is.
     pub spec: &'static NodeSpec,
-    /// Files whose path, size and time its result depends on.
+    /// Files that it reads, whose path, size and time its result depends on.
     pub files: fn(&Params) -> Result<Vec<PathBuf>, NodeError>,
     /// Makes its outputs, in the order of the specification.
     pub run: fn(&Run) -> Result<Vec<Value>, NodeError>,

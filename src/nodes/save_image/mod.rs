@@ -1,12 +1,10 @@
 //! `save_image`: writes a picture to a file.
 
-use std::path::PathBuf;
-
-use super::{NodeKind, Run};
-use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, Params, PortSpec, PortType, Value};
+use super::{NodeKind, Run, no_files};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::image::{self, Image};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "save_image",
@@ -21,11 +19,6 @@ static SPEC: NodeSpec = NodeSpec {
     params: &[ParamSpec::out_path("path", "out/picture.exr")
         .doc("Where to write, .exr or .png; relative to the graph file.")],
 };
-
-/// What is there already: when somebody removed or changed the file, it is written again.
-fn files(params: &Params) -> Result<Vec<PathBuf>, NodeError> {
-    Ok(vec![params.path("path").to_owned()])
-}
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let picture: &Image = run.inputs.one("image");
