@@ -9,8 +9,8 @@ use std::time::Instant;
 
 use crate::gpu::{AdapterChoice, Gpu, GpuError, shader_names, shader_text};
 use crate::graph::{
-    Cache, CancelToken, Document, Evaluation, Event, FileState, Host, Inputs, NodeError, NodeJob, Outputs,
-    ParamKind, Plan, Target, evaluate,
+    Cache, CancelToken, Document, Evaluation, Event, FileState, Host, Inputs, NodeError, NodeJob, Outcome,
+    Outputs, ParamKind, Plan, Target, evaluate,
 };
 use crate::nodes::{self, Run};
 
@@ -47,7 +47,7 @@ pub struct NodeCost {
     pub cpu_ms: f64,
     /// Of its stages in ms.
     pub gpu_ms: f64,
-    /// Of its outputs.
+    /// What its outputs hold once all nodes have run: of a file, the grids that others asked for.
     pub bytes: u64,
     /// Whether its result was there already.
     pub cached: bool,
@@ -100,6 +100,11 @@ impl Session {
             }
             on_event(&event);
         });
+        for cost in &mut costs {
+            if let Some(Outcome::Done { outputs, .. }) = evaluation.nodes.get(&cost.name) {
+                cost.bytes = outputs.bytes();
+            }
+        }
         Solved {
             evaluation,
             costs,

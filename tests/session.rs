@@ -7,6 +7,7 @@ use std::path::Path;
 use tyndall::graph::{CancelToken, Document, End, Event, Node, Target, Wire};
 use tyndall::nodes;
 use tyndall::session::{Session, Solved};
+use tyndall::volume::Volume;
 
 /// A sample from a file in a sun, small enough for a test.
 fn document() -> Document {
@@ -105,6 +106,20 @@ fn a_picture_is_written_again_only_where_it_changed() {
     document.nodes["sun"].params.clear();
     assert_eq!(ran(&solve(&mut session, &document)), ["save"]);
     assert_eq!(std::fs::read(&path).unwrap(), bright);
+}
+
+#[test]
+fn a_volume_is_counted_by_the_grids_that_were_asked_for() {
+    let Some(mut session) = common::session() else { return };
+    let document = document();
+    let bytes = |solved: &Solved| solved.costs.iter().find(|cost| cost.name == "cloud").unwrap().bytes;
+    let alone = session.solve(&document, Target::Nodes(&["cloud"]), &CancelToken::new(), &mut |_| ());
+    assert_eq!(bytes(&alone), 0);
+    let solved = solve(&mut session, &document);
+    let volume: &Volume = solved.evaluation.value("cloud", "volume").unwrap().get();
+    let voxels = volume.grid("density").unwrap().values.len() as u64;
+    assert!(voxels > 0);
+    assert_eq!(bytes(&solved), 4 * voxels);
 }
 
 #[test]

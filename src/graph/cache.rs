@@ -1,5 +1,7 @@
 //! Results by key within a budget of bytes; the least recently used go first.
 //!
+//! What a value holds may grow after it was kept (a file's grids are decoded when they are asked for), so
+//! sizes are asked for anew at each insertion, and the budget holds from one insertion to the next growth.
 //! The cache holds references: what an evaluation or a window still holds lives on after it was dropped
 //! here, and only stops being found. A value that several nodes pass on is counted once for each. A
 //! result larger than the whole budget is not kept and drives nothing out. Tested by budget and order.
@@ -13,7 +15,6 @@ use super::key::Key;
 #[derive(Debug)]
 pub struct Cache {
     budget_bytes: u64,
-    used_bytes: u64,
     /// The least recently used first.
     entries: IndexMap<Key, Outputs>,
 }
@@ -21,12 +22,12 @@ pub struct Cache {
 impl Cache {
     /// An empty cache that holds at most `budget_bytes`.
     pub fn new(budget_bytes: u64) -> Self {
-        Self { budget_bytes, used_bytes: 0, entries: IndexMap::new() }
+        Self { budget_bytes, entries: IndexMap::new() }
     }
 
     /// What it holds now, in bytes.
     pub fn used_bytes(&self) -> u64 {
-        self.used_bytes
+        self.entries.values().map(Outputs::bytes).fold(0, u64::saturating_add)
     }
 
     /// The outputs of this key, which are now the most recently used.
@@ -38,31 +39,28 @@ impl Cache {
 
     /// Keeps the outputs and drops what is too much.
     pub fn insert(&mut self, key: Key, outputs: Outputs) {
-        if let Some(old) = self.entries.shift_remove(&key) {
-            self.used_bytes -= old.bytes();
-        }
-        let bytes = outputs.bytes();
-        if bytes > self.budget_bytes {
-            return;
-        }
+        self.entries.shift_remove(&key);
         // Compared by subtraction, because the sum of two sizes may overflow.
-        while self.used_bytes > self.budget_bytes - bytes {
-            let (_, dropped) = self.entries.shift_remove_index(0).expect("used bytes");
-            self.used_bytes -= dropped.bytes();
+        let room = self.budget_bytes.checked_sub(outputs.bytes());
+        while self.used_bytes() > room.unwrap_or(self.budget_bytes) {
+            self.entries.shift_remove_index(0).expect("used bytes");
         }
-        self.used_bytes += bytes;
-        self.entries.insert(key, outputs);
+        if room.is_some() {
+            self.entries.insert(key, outputs);
+        }
     }
 
     /// Drops everything.
     pub fn clear(&mut self) {
         self.entries.clear();
-        self.used_bytes = 0;
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
+
     use super::*;
     use crate::graph::params::Params;
     use crate::graph::spec::{Category, NodeSpec, PortType};
@@ -115,6 +113,20 @@ mod tests {
         cache.clear();
         assert_eq!(cache.used_bytes(), 0);
         assert!(cache.get(&key(2)).is_none());
+    }
+
+    #[test]
+    fn what_grows_is_counted_as_it_is() {
+        let grown = Arc::new(AtomicU64::new(10));
+        let growing = Value::measured(PortType::Volume, Arc::clone(&grown), |size| size.load(Relaxed));
+        let mut cache = Cache::new(100);
+        cache.insert(key(1), Outputs::new([growing]));
+        cache.insert(key(2), outputs(40));
+        grown.store(70, Relaxed);
+        assert_eq!(cache.used_bytes(), 110);
+        cache.insert(key(3), outputs(20));
+        assert!(cache.get(&key(1)).is_none());
+        assert_eq!(cache.used_bytes(), 60);
     }
 
     #[test]

@@ -109,9 +109,9 @@ impl Outputs {
         self.written.iter().all(FileState::holds)
     }
 
-    /// Memory of all values, in bytes.
+    /// Memory that all values hold now, in bytes.
     pub fn bytes(&self) -> u64 {
-        let sizes = self.values.iter().map(|value| value.bytes);
+        let sizes = self.values.iter().map(Value::bytes);
         sizes.fold(0, u64::saturating_add)
     }
 }

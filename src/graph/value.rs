@@ -15,16 +15,37 @@ use super::spec::PortType;
 pub struct Value {
     /// What may be wired to it.
     pub kind: PortType,
-    /// Memory it holds on CPU and GPU together, in bytes.
-    pub bytes: u64,
+    bytes: Bytes,
     data: Arc<dyn Any + Send + Sync>,
     type_name: &'static str,
+}
+
+#[derive(Clone)]
+enum Bytes {
+    Fixed(u64),
+    Measured(Arc<dyn Fn() -> u64 + Send + Sync>),
 }
 
 impl Value {
     /// Wraps `data`, which holds `bytes` bytes on CPU and GPU together.
     pub fn new<T: Any + Send + Sync>(kind: PortType, bytes: u64, data: T) -> Self {
-        Self { kind, bytes, data: Arc::new(data), type_name: type_name::<T>() }
+        Self { kind, bytes: Bytes::Fixed(bytes), data: Arc::new(data), type_name: type_name::<T>() }
+    }
+
+    /// Wraps data that comes to hold more as it is asked for more: `measure` says what it holds now.
+    pub fn measured<T: Any + Send + Sync>(kind: PortType, data: T, measure: fn(&T) -> u64) -> Self {
+        let data = Arc::new(data);
+        let seen = Arc::clone(&data);
+        let bytes = Bytes::Measured(Arc::new(move || measure(&seen)));
+        Self { kind, bytes, data, type_name: type_name::<T>() }
+    }
+
+    /// Memory it holds now on CPU and GPU together, in bytes.
+    pub fn bytes(&self) -> u64 {
+        match &self.bytes {
+            Bytes::Fixed(bytes) => *bytes,
+            Bytes::Measured(measure) => measure(),
+        }
     }
 
     /// The data.
@@ -45,7 +66,7 @@ impl Value {
 
 impl fmt::Debug for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "Value({}, {} bytes, {})", self.kind, self.bytes, self.type_name)
+        write!(f, "Value({}, {} bytes, {})", self.kind, self.bytes(), self.type_name)
     }
 }
 

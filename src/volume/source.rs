@@ -104,6 +104,16 @@ impl Volume {
         self.transform
     }
 
+    /// Memory that its voxels take now: of a file only the grids that were asked for, which are dense then.
+    /// The heads of a file's grids, some KiB, are not counted.
+    pub fn bytes(&self) -> u64 {
+        let of = |dense: &Dense| size_of_val(dense.values.as_slice()) as u64;
+        match &self.source {
+            Source::Shape { dense, .. } => of(dense),
+            Source::File(_) => self.decoded.lock().unwrap().values().map(|dense| of(dense)).sum(),
+        }
+    }
+
     /// The voxels of a grid in its active box; every value finite and at least 0.
     ///
     /// # Errors

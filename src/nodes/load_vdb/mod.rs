@@ -47,8 +47,6 @@ fn files(params: &Params) -> Result<Vec<PathBuf>, NodeError> {
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let path = file(run.params)?;
     let file = vdb::File::open(&path).map_err(NodeError::new)?;
-    // What its grids take when they are decoded is not known yet; a file is about as large.
-    let bytes = std::fs::metadata(&path).map_or(0, |found| found.len());
     let volume = Volume::from_file(file, transform::read(run.params)?);
-    Ok(vec![Value::new(PortType::Volume, bytes, volume)])
+    Ok(vec![Value::measured(PortType::Volume, volume, Volume::bytes)])
 }

@@ -93,11 +93,12 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     };
     let lattice = Lattice::fit(at(low), at(high), dense.world_from_index, fineness);
     let sigma_t = resample(run, &dense, density_scale, &lattice)?;
-    let bytes = sigma_t.bytes();
+    let blocks = occupancy(run.gpu, &sigma_t)?;
+    let bytes = sigma_t.bytes() + blocks.bytes();
     let medium = Medium {
         homogeneous: homogeneous(volume, &lattice),
         lattice,
-        blocks: Arc::new(occupancy(run.gpu, &sigma_t)?),
+        blocks: Arc::new(blocks),
         sigma_t: Arc::new(sigma_t),
         sigma_t_max,
         albedo: run.params.rgb("albedo"),

@@ -47,9 +47,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     };
     let dense =
         shapes::generate(kind, size_m, run.params.i64("resolution") as usize, run.params.i64("seed") as u32);
-    let bytes = size_of_val(dense.values.as_slice()) as u64;
     let evenly = evenly.map(|ellipsoid| Evenly { ellipsoid, half_extent: 0.5 * DVec3::from_array(size_m) });
     let transform = transform::read(run.params)?;
     let volume = Volume::from_shape(dense, evenly, transform);
-    Ok(vec![Value::new(PortType::Volume, bytes, volume)])
+    Ok(vec![Value::measured(PortType::Volume, volume, Volume::bytes)])
 }
