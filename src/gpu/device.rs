@@ -82,7 +82,10 @@ pub struct Gpu {
     pub(super) memory: Arc<Memory>,
     pub(super) pipelines: Mutex<HashMap<String, Arc<Pipeline>>>,
     pub(super) timestamps: bool,
-    pub(super) lost: Arc<Mutex<Option<String>>>,
+    /// Why the device is gone; it stays so.
+    lost: Arc<Mutex<Option<String>>>,
+    /// The first error since the last check that no scope took.
+    uncaptured: Arc<Mutex<Option<String>>>,
     stage_times: Mutex<Option<Vec<super::StageTime>>>,
     report: AdapterReport,
     limits: wgpu::Limits,
@@ -148,7 +151,8 @@ impl Gpu {
                 *seen.lock().unwrap() = Some(message);
             }
         });
-        let seen = Arc::clone(&lost);
+        let uncaptured = Arc::new(Mutex::new(None));
+        let seen = Arc::clone(&uncaptured);
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             seen.lock().unwrap().get_or_insert(error.to_string());
         }));
@@ -159,10 +163,30 @@ impl Gpu {
             memory: Arc::default(),
             pipelines: Mutex::default(),
             lost,
+            uncaptured,
             stage_times: Mutex::new(None),
             report,
             limits,
         })
+    }
+
+    /// Fails where something went wrong since the last check: an error that no scope took is told once,
+    /// as one of `work`; a lost device is told every time.
+    ///
+    /// # Errors
+    /// [`GpuError::Lost`], [`GpuError::Device`].
+    pub fn check(&self, work: &str) -> Result<(), GpuError> {
+        let uncaptured = self.uncaptured.lock().unwrap().take();
+        if let Some(why) = self.lost.lock().unwrap().clone() {
+            return Err(GpuError::Lost(why));
+        }
+        uncaptured.map_or(Ok(()), |error| Err(GpuError::Device(format!("{work}: {error}"))))
+    }
+
+    /// As if the driver had said that the device is gone.
+    #[cfg(test)]
+    pub(super) fn lose(&self, why: &str) {
+        *self.lost.lock().unwrap() = Some(why.to_owned());
     }
 
     /// Name, driver and limits of the open adapter.

@@ -57,7 +57,7 @@ pub struct Texture {
     pub(super) counted: Arc<Counted>,
 }
 
-/// A storage buffer; zero when new.
+/// A buffer; zero when new.
 pub struct Buffer {
     pub(super) buffer: wgpu::Buffer,
     pub(super) counted: Arc<Counted>,
@@ -226,12 +226,32 @@ impl Gpu {
                 remedy: remedy.to_owned(),
             });
         }
-        let bytes = bytes.max(16).next_multiple_of(16);
+        let usage = wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST;
+        self.allocate(what, bytes.max(16).next_multiple_of(16), usage, remedy)
+    }
+
+    /// Every buffer comes from here, so that each is checked, counted and inside an error scope.
+    pub(super) fn allocate(
+        &self,
+        what: &str,
+        bytes: u64,
+        usage: wgpu::BufferUsages,
+        remedy: &str,
+    ) -> Result<Buffer, GpuError> {
+        let limit = self.limits().max_buffer_size;
+        if bytes > limit {
+            return Err(GpuError::TooLarge {
+                what: what.to_owned(),
+                need: format!("{} MiB", bytes >> 20),
+                limit: format!("{} MiB", limit >> 20),
+                remedy: remedy.to_owned(),
+            });
+        }
         let scope = self.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory);
         let buffer = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some(what),
             size: bytes,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
+            usage,
             mapped_at_creation: false,
         });
         if pollster::block_on(scope.pop()).is_some() {

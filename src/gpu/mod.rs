@@ -8,7 +8,8 @@
 //!
 //! Limits are asked from the device; what does not fit is refused with its size, the limit and
 //! the remedy that the caller names. Every allocation is counted, so that a render can report its
-//! peak. Nothing here is `unsafe`, and the GL backend is left out on purpose: its 3-D storage
+//! peak. An error that no scope takes is told once, with the work that it hit, and the next work goes on;
+//! only a device that was lost stays lost. Nothing here is `unsafe`, and the GL backend is left out on purpose: its 3-D storage
 //! writes reach only z = 0, in silence.
 
 mod device;
@@ -18,6 +19,8 @@ mod readback;
 mod record;
 mod shader;
 mod stage;
+#[cfg(test)]
+pub(crate) mod testing;
 
 pub use device::{AdapterChoice, AdapterReport, Gpu, adapters};
 pub use field::{Buffer, Format, Sampler, Texture};
@@ -55,7 +58,13 @@ pub enum GpuError {
     /// A shader does not compile; file and line are those of the source file.
     #[error("{0}")]
     Shader(String),
-    /// The driver reported an error, or the device was lost.
+    /// The driver reported an error; the device goes on.
     #[error("the GPU reported: {0}")]
     Device(String),
+    /// The device is gone, and all that it held.
+    #[error("the GPU was lost ({0}): start again, with smaller fields or another --adapter")]
+    Lost(String),
 }
+
+#[cfg(test)]
+mod tests;

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Bound, Gpu, GpuError, Texture};
+use super::{Bound, Buffer, Gpu, GpuError, Texture};
 
 /// GPU time of one pass.
 #[derive(Debug, Clone, serde::Serialize)]
@@ -23,6 +23,8 @@ pub struct Recorder<'a> {
     stages: Vec<String>,
     apart: bool,
     scope: Option<wgpu::ErrorScopeGuard>,
+    /// The first stage that could not be bound.
+    unbound: Option<GpuError>,
 }
 
 struct Queries {
@@ -54,6 +56,7 @@ impl Gpu {
             queries,
             stages: Vec::new(),
             apart,
+            unbound: None,
         }
     }
 }
@@ -61,6 +64,13 @@ impl Gpu {
 impl Recorder<'_> {
     /// Runs `bound` once for each of `threads`.
     pub fn dispatch(&mut self, bound: &Bound, threads: [usize; 3]) {
+        let groups = match &bound.groups {
+            Ok(groups) => groups,
+            Err(error) => {
+                self.unbound.get_or_insert_with(|| error.clone());
+                return;
+            }
+        };
         if self.apart && self.stages.last() != Some(&bound.label) {
             self.pass = None;
         }
@@ -69,7 +79,7 @@ impl Recorder<'_> {
         }
         let pass = self.pass.as_mut().expect("a pass was begun above");
         pass.set_pipeline(&bound.pipeline.pipeline);
-        for (idx, group) in bound.groups.iter().enumerate() {
+        for (idx, group) in groups.iter().enumerate() {
             pass.set_bind_group(idx as u32, group, &[]);
         }
         let [x, y, z] = bound.workgroups(threads);
@@ -115,22 +125,14 @@ impl Recorder<'_> {
     /// no timestamps).
     ///
     /// # Errors
-    /// [`GpuError::Device`] with what the driver said; [`GpuError::OutOfMemory`].
+    /// [`GpuError::Device`] with what the driver said; [`GpuError::OutOfMemory`], also where a stage that
+    /// was dispatched could not be bound: then nothing runs.
     pub fn finish(mut self) -> Result<f64, GpuError> {
         self.pass = None;
-        let n_queries =
-            self.queries.as_ref().map_or(0, |queries| (2 * self.stages.len() as u32).min(queries.capacity));
-        let ticks = self.queries.as_ref().filter(|_| n_queries > 0).map(|queries| {
-            let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-            let resolved = self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some("timestamps"),
-                size: u64::from(n_queries) * 8,
-                usage,
-                mapped_at_creation: false,
-            });
-            self.encoder.resolve_query_set(&queries.set, 0..n_queries, &resolved, 0);
-            resolved
-        });
+        if let Some(error) = self.unbound.take() {
+            return Err(error);
+        }
+        let ticks = self.resolve()?;
         let start = Instant::now();
         self.gpu.queue.submit([self.encoder.finish()]);
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
@@ -138,13 +140,10 @@ impl Recorder<'_> {
         if let Some(error) = self.scope.take().and_then(|scope| pollster::block_on(scope.pop())) {
             return Err(GpuError::Device(format!("{}: {error}", self.label)));
         }
-        if let Some(message) = self.gpu.lost.lock().unwrap().clone() {
-            return Err(GpuError::Device(message));
-        }
+        self.gpu.check(&self.label)?;
         waited.map_err(|error| GpuError::Device(error.to_string()))?;
         let Some(ticks) = ticks else { return Ok(wall_ms) };
-        let raw = self.gpu.read_raw(&ticks, 0, u64::from(n_queries) * 8)?;
-        let ticks: &[u64] = bytemuck::cast_slice(&raw);
+        let ticks: Vec<u64> = self.gpu.read_buffer(&ticks)?;
         let period = f64::from(self.gpu.queue.get_timestamp_period()) * 1e-6;
         let times: Vec<StageTime> = ticks
             .chunks_exact(2)
@@ -156,6 +155,19 @@ impl Recorder<'_> {
             .collect();
         self.gpu.add_stage_times(&times);
         Ok(times.iter().map(|time| time.gpu_ms).sum())
+    }
+
+    /// Where the timestamps will stand, two a pass; `None` where there are none.
+    fn resolve(&mut self) -> Result<Option<Buffer>, GpuError> {
+        let Some(queries) = &self.queries else { return Ok(None) };
+        let n_queries = (2 * self.stages.len() as u32).min(queries.capacity);
+        if n_queries == 0 {
+            return Ok(None);
+        }
+        let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
+        let resolved = self.gpu.allocate("timestamps", u64::from(n_queries) * 8, usage, "")?;
+        self.encoder.resolve_query_set(&queries.set, 0..n_queries, &resolved.buffer, 0);
+        Ok(Some(resolved))
     }
 }
 

@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use wgpu::util::DeviceExt;
-
 use super::field::Counted;
 use super::{Buffer, Gpu, GpuError, Sampler, Shader, Texture};
 
@@ -54,7 +52,8 @@ impl<'a> Bind<'a> {
 pub struct Bound {
     pub(super) label: String,
     pub(super) pipeline: Arc<Pipeline>,
-    pub(super) groups: [wgpu::BindGroup; 3],
+    /// Or why they could not be made, which the recorder tells.
+    pub(super) groups: Result<[wgpu::BindGroup; 3], GpuError>,
     /// The bind groups keep their fields alive, so these stay on the account.
     _held: Vec<Arc<Counted>>,
 }
@@ -103,35 +102,37 @@ impl Gpu {
 }
 
 impl Stage {
-    /// Binds parameters (group 0, binding 0), inputs (group 1) and outputs (group 2).
+    /// Binds parameters (group 0, binding 0), inputs (group 1) and outputs (group 2). Where the device has
+    /// no room for the parameters, the recorder that is given the stage says so.
     pub fn bind<P: bytemuck::Pod>(&self, gpu: &Gpu, params: &P, inputs: &[Bind], outputs: &[Bind]) -> Bound {
-        let uniform = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
-            label: Some(&self.label),
-            contents: bytemuck::bytes_of(params),
-            usage: wgpu::BufferUsages::UNIFORM,
+        let mut held: Vec<Arc<Counted>> = inputs.iter().chain(outputs).filter_map(Bind::counted).collect();
+        let groups = self.uniform(gpu, bytemuck::bytes_of(params)).map(|uniform| {
+            held.push(Arc::clone(&uniform.counted));
+            let binds = [&[Bind::Buffer(&uniform)], inputs, outputs];
+            std::array::from_fn(|idx| self.group(gpu, idx as u32, binds[idx]))
         });
-        let group = |index: u32, entries: &[wgpu::BindGroupEntry]| {
-            gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-                label: Some(&self.label),
-                layout: &self.pipeline.pipeline.get_bind_group_layout(index),
-                entries,
-            })
-        };
-        let list = |index: u32, binds: &[Bind]| {
-            let entries: Vec<wgpu::BindGroupEntry> = binds
-                .iter()
-                .enumerate()
-                .map(|(idx, bind)| wgpu::BindGroupEntry { binding: idx as u32, resource: bind.resource() })
-                .collect();
-            group(index, &entries)
-        };
-        let params = group(0, &[wgpu::BindGroupEntry { binding: 0, resource: uniform.as_entire_binding() }]);
-        Bound {
-            label: self.label.clone(),
-            pipeline: Arc::clone(&self.pipeline),
-            groups: [params, list(1, inputs), list(2, outputs)],
-            _held: inputs.iter().chain(outputs).filter_map(Bind::counted).collect(),
-        }
+        Bound { label: self.label.clone(), pipeline: Arc::clone(&self.pipeline), groups, _held: held }
+    }
+
+    fn uniform(&self, gpu: &Gpu, contents: &[u8]) -> Result<Buffer, GpuError> {
+        let usage = wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST;
+        // Sizes of copies are multiples of 4, and so are those of all parameters.
+        let uniform = gpu.allocate(&self.label, contents.len() as u64, usage, "")?;
+        gpu.queue.write_buffer(&uniform.buffer, 0, contents);
+        Ok(uniform)
+    }
+
+    fn group(&self, gpu: &Gpu, index: u32, binds: &[Bind]) -> wgpu::BindGroup {
+        let entries: Vec<wgpu::BindGroupEntry> = binds
+            .iter()
+            .enumerate()
+            .map(|(idx, bind)| wgpu::BindGroupEntry { binding: idx as u32, resource: bind.resource() })
+            .collect();
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
+            label: Some(&self.label),
+            layout: &self.pipeline.pipeline.get_bind_group_layout(index),
+            entries: &entries,
+        })
     }
 }
 

@@ -8,38 +8,20 @@
 
 use std::cell::Cell;
 use std::path::Path;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use glam::{DMat4, DVec3, DVec4};
 use serde_json::{Map, Value as Json};
 
 use super::oracle_scene::{BeamLight, OracleMedium};
 use super::{NodeError, Run, kind};
-use crate::gpu::{AdapterChoice, Format, Gpu, Mirror, Shader, wgsl_members};
+pub use crate::gpu::testing::gpu;
+use crate::gpu::{Format, Gpu, Mirror, Shader, wgsl_members};
 use crate::graph::{CancelToken, Inputs, Params, PortType, Value};
 use crate::light::{Light, Ordinate, Ordinates};
 use crate::volume::Lattice;
 use crate::volume::field::Field;
 use crate::wire::{Beam, Beams, Medium, Place, Residual, occupancy};
-
-/// The device of all tests; `None`, said aloud, where there is none and none is required
-/// (`TYNDALL_GPU=require|auto|off`).
-pub fn gpu() -> Option<&'static Gpu> {
-    static GPU: OnceLock<Result<Gpu, String>> = OnceLock::new();
-    let mode = std::env::var("TYNDALL_GPU").unwrap_or_default();
-    if mode == "off" {
-        eprintln!("skipped: TYNDALL_GPU=off");
-        return None;
-    }
-    match GPU.get_or_init(|| Gpu::open(&AdapterChoice::Auto).map_err(|error| error.to_string())) {
-        Ok(gpu) => Some(gpu),
-        Err(error) if mode == "require" => panic!("{error}"),
-        Err(error) => {
-            eprintln!("skipped: {error}");
-            None
-        }
-    }
-}
 
 /// A tolerance for what was made with filtered textures: software drivers weigh in f32, others with
 /// 8 bits, an error of half a step of 1/256 of the difference of two neighbors.
