@@ -134,14 +134,14 @@ impl Host for NodeHost<'_> {
 
     fn run(&self, job: &NodeJob, inputs: &Inputs) -> Result<Outputs, NodeError> {
         let kind = nodes::kind(job.spec.id).expect("the plan holds kinds of the catalog");
-        let run =
-            Run { params: job.params, inputs, gpu: self.gpu, cancel: job.cancel, gpu_ms: Default::default() };
+        let run = Run { params: job.params, inputs, gpu: self.gpu, cancel: job.cancel };
+        self.gpu.take_ms();
         let values = (kind.run)(&run);
         // Asked also where the node failed, so that the next node does not get this one's error.
         let reported = self.gpu.check(job.spec.id);
         let values = values?;
         reported?;
-        self.gpu_ms.borrow_mut().insert(job.name.to_owned(), run.gpu_ms.get());
+        self.gpu_ms.borrow_mut().insert(job.name.to_owned(), self.gpu.take_ms());
         let written = job.spec.params.iter().filter(|param| matches!(param.kind, ParamKind::OutPath));
         let written = written.map(|param| FileState::of(job.params.path(param.name)));
         Ok(Outputs::new(values).with_written(written.collect::<Vec<_>>()))

@@ -123,6 +123,41 @@ fn a_volume_is_counted_by_the_grids_that_were_asked_for() {
 }
 
 #[test]
+fn all_gpu_time_belongs_to_a_node() {
+    let Some(mut session) = common::session() else { return };
+    if !session.gpu().report().timestamps {
+        eprintln!("skipped: the adapter has no timestamps");
+        return;
+    }
+    session.gpu().time_stages();
+    // Two suns of two splits, whose beams are merged.
+    let mut document = document();
+    for (name, like) in [("split_2", "split"), ("beams_2", "beams")] {
+        let node = document.nodes[like].clone();
+        document.nodes.insert(name.to_owned(), node);
+    }
+    let wires: Vec<Wire> = document.wires.clone();
+    let renamed = |end: &End| match end.node.as_str() {
+        "split" | "beams" => End { node: format!("{}_2", end.node), port: end.port.clone() },
+        _ => end.clone(),
+    };
+    for wire in wires {
+        let other = Wire { from: renamed(&wire.from), to: renamed(&wire.to) };
+        if other != wire {
+            document.wires.push(other);
+        }
+    }
+    let solved = solve(&mut session, &document);
+    let times = session.gpu().take_stage_times();
+    let stages: Vec<&str> = times.iter().map(|time| time.stage.as_str()).collect();
+    assert!(stages.contains(&"occupancy"), "{stages:?}");
+    let of_stages: f64 = times.iter().map(|time| time.gpu_ms).sum();
+    let of_nodes: f64 = solved.costs.iter().map(|cost| cost.gpu_ms).sum();
+    // The same numbers in another order of addition.
+    assert!((of_nodes - of_stages).abs() < 1e-9 * of_stages, "{of_nodes} of {of_stages} ms");
+}
+
+#[test]
 fn a_cancel_is_heard_between_nodes() {
     let Some(mut session) = common::session() else { return };
     let cancel = CancelToken::new();

@@ -87,6 +87,8 @@ pub struct Gpu {
     /// The first error since the last check that no scope took.
     uncaptured: Arc<Mutex<Option<String>>>,
     stage_times: Mutex<Option<Vec<super::StageTime>>>,
+    /// GPU time since it was last taken.
+    gpu_ms: Mutex<f64>,
     report: AdapterReport,
     limits: wgpu::Limits,
 }
@@ -165,6 +167,7 @@ impl Gpu {
             lost,
             uncaptured,
             stage_times: Mutex::new(None),
+            gpu_ms: Mutex::default(),
             report,
             limits,
         })
@@ -221,6 +224,15 @@ impl Gpu {
     /// The most bytes held at once since the last call, which starts a new count.
     pub fn take_peak_bytes(&self) -> u64 {
         self.memory.peak.swap(self.bytes_now(), Ordering::Relaxed)
+    }
+
+    /// GPU time in ms of all that ran since the last call (wall time where the adapter has no timestamps).
+    pub fn take_ms(&self) -> f64 {
+        std::mem::take(&mut *self.gpu_ms.lock().unwrap())
+    }
+
+    pub(super) fn add_ms(&self, ms: f64) {
+        *self.gpu_ms.lock().unwrap() += ms;
     }
 
     /// From now on each stage is timed apart (a pass of its own, which costs a little); the times

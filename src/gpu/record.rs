@@ -122,7 +122,7 @@ impl Recorder<'_> {
     }
 
     /// Submits, waits, and returns the milliseconds of GPU time (wall time where the adapter has
-    /// no timestamps).
+    /// no timestamps), which [`Gpu::take_ms`] also counts.
     ///
     /// # Errors
     /// [`GpuError::Device`] with what the driver said; [`GpuError::OutOfMemory`], also where a stage that
@@ -142,7 +142,10 @@ impl Recorder<'_> {
         }
         self.gpu.check(&self.label)?;
         waited.map_err(|error| GpuError::Device(error.to_string()))?;
-        let Some(ticks) = ticks else { return Ok(wall_ms) };
+        let Some(ticks) = ticks else {
+            self.gpu.add_ms(wall_ms);
+            return Ok(wall_ms);
+        };
         let ticks: Vec<u64> = self.gpu.read_buffer(&ticks)?;
         let period = f64::from(self.gpu.queue.get_timestamp_period()) * 1e-6;
         let times: Vec<StageTime> = ticks
@@ -154,7 +157,9 @@ impl Recorder<'_> {
             })
             .collect();
         self.gpu.add_stage_times(&times);
-        Ok(times.iter().map(|time| time.gpu_ms).sum())
+        let gpu_ms = times.iter().map(|time| time.gpu_ms).sum();
+        self.gpu.add_ms(gpu_ms);
+        Ok(gpu_ms)
     }
 
     /// Where the timestamps will stand, two a pass; `None` where there are none.

@@ -4,7 +4,6 @@
 //! Nodes know the graph's node types, the GPU layer and the domain modules, never another node: what
 //! they share travels on wires (`crate::wire`).
 
-use std::cell::Cell;
 use std::path::PathBuf;
 
 use crate::gpu::{Gpu, GpuError, Recorder};
@@ -72,17 +71,15 @@ pub struct Run<'a> {
     pub gpu: &'a Gpu,
     /// To be asked between stages.
     pub cancel: &'a crate::graph::CancelToken,
-    /// GPU time so far in ms.
-    pub gpu_ms: Cell<f64>,
 }
 
 impl Run<'_> {
-    /// Runs what was recorded, and counts its time.
+    /// Runs what was recorded.
     ///
     /// # Errors
     /// What the device reports; [`NodeError::Cancelled`].
     pub fn finish(&self, recorder: Recorder) -> Result<(), NodeError> {
-        self.gpu_ms.set(self.gpu_ms.get() + recorder.finish()?);
+        recorder.finish()?;
         self.cancel.check()
     }
 }

@@ -6,7 +6,6 @@
 //! is compared differs by the rounding of the stage under test alone. Real Vulkan, Metal and DX12 devices
 //! interpolate textures with weights of 8 bits: tolerances of tests that filter hold [`filtered`].
 
-use std::cell::Cell;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -55,7 +54,7 @@ pub fn with_run<T>(
         list.push(port, (*value).clone());
     }
     let cancel = CancelToken::new();
-    body(&Run { params: &params, inputs: &list, gpu, cancel: &cancel, gpu_ms: Cell::new(0.0) })
+    body(&Run { params: &params, inputs: &list, gpu, cancel: &cancel })
 }
 
 /// Numbers in 0..1 from a seed (splitmix64).
