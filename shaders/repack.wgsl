@@ -1,5 +1,7 @@
 // A thread: one corner of one or two beams that had texels of their own, as a texel of four.
 
+#import "lib/tau_4.wgsl"
+
 struct RepackParams {
     corners: vec3u,
     n_beams: u32,
@@ -18,9 +20,9 @@ fn repack(@builtin(global_invocation_id) id: vec3u) {
     if any(id >= params.corners) {
         return;
     }
-    var depths = vec4f(textureLoad(single, params.origins[0].xyz + id, 0).x, 0.0, 0.0, 0.0);
+    var depths = vec4f(stored_tau(textureLoad(single, params.origins[0].xyz + id, 0).x), 0.0, 0.0, 0.0);
     if params.n_beams > 1u {
-        depths.y = textureLoad(single, params.origins[1].xyz + id, 0).x;
+        depths.y = stored_tau(textureLoad(single, params.origins[1].xyz + id, 0).x);
     }
     textureStore(packed, params.origin + id, depths);
 }

@@ -3,6 +3,7 @@
 
 #import "lib/walk.wgsl"
 #import "lib/beam.wgsl"
+#import "lib/tau_{pack}.wgsl"
 
 struct WalkParams {
     shape: Shape,
@@ -18,9 +19,6 @@ struct WalkParams {
 @group(1) @binding(0) var sigma_t: texture_3d<f32>;
 @group(1) @binding(1) var linear_clamp: sampler;
 @group(2) @binding(0) var tau: texture_storage_3d<{format}, write>;
-
-// The largest finite half float is 65504; exp(-k tau) is 0 in f32 long before, for every |g| <= 0.999.
-const TAU_MAX: f32 = 65000.0;
 
 @compute @workgroup_size(8, 8, 1)
 fn walk_corners(@builtin(global_invocation_id) id: vec3u) {
@@ -38,7 +36,7 @@ fn walk_corners(@builtin(global_invocation_id) id: vec3u) {
             reach = length(line);
             to_light = line / max(reach, 1e-6);
         }
-        depths[n] = min(walk(sigma_t, linear_clamp, params.shape, params.cell_m, p, to_light, reach), TAU_MAX);
+        depths[n] = stored_tau(walk(sigma_t, linear_clamp, params.shape, params.cell_m, p, to_light, reach));
     }
     textureStore(tau, params.origin + id, depths);
 }

@@ -31,7 +31,7 @@ fn with_imports(name: &str) -> String {
     let mut text = String::new();
     let mut to_read = vec![name.to_owned()];
     while let Some(name) = to_read.pop() {
-        let file = shader_text(&name.replace("{channels}", "1")).unwrap();
+        let file = shader_text(&name.replace("{channels}", "1").replace("{pack}", "1")).unwrap();
         let imports = file.lines().filter_map(|line| line.strip_prefix("#import "));
         to_read.extend(imports.map(|import| import.trim().trim_matches('"').to_owned()));
         text += &file;

@@ -1,6 +1,7 @@
 // A thread: the optical depths of up to four beams at one corner, each between the four lines around it.
 
 #import "principal_propagation/shear.wgsl"
+#import "lib/tau_{pack}.wgsl"
 
 struct GatherParams {
     shears: array<Shear, 4>,
@@ -19,9 +20,6 @@ struct GatherParams {
 @group(1) @binding(4) var linear_clamp: sampler;
 @group(2) @binding(0) var tau: texture_storage_3d<{format}, write>;
 
-// See walk.wgsl.
-const TAU_MAX: f32 = 65000.0;
-
 fn between_lines(lines: texture_3d<f32>, shear: Shear, id: vec3u) -> f32 {
     let p = vec3f(id);
     var uvw = p;
@@ -33,7 +31,7 @@ fn between_lines(lines: texture_3d<f32>, shear: Shear, id: vec3u) -> f32 {
     let j = select(f32(shear.corners.z) - 1.0 - uvw.z, uvw.z, shear.sense > 0.0);
     let line = 2.0 * (uvw.xy - line_offset(shear, j));
     let at = (vec3f(line, j) + 0.5) / vec3f(textureDimensions(lines));
-    return min(textureSampleLevel(lines, linear_clamp, at, 0.0).x, TAU_MAX);
+    return stored_tau(textureSampleLevel(lines, linear_clamp, at, 0.0).x);
 }
 
 @compute @workgroup_size(8, 8, 1)

@@ -166,11 +166,23 @@ fn depths_beyond_half_floats_end_at_their_largest() {
     let Some(gpu) = gpu() else { return };
     let scene = Scene::new([8, 8, 8], Filling::Homogeneous, 1e6);
     let medium = scene.medium(gpu);
-    let beams = scene.propagate(gpu, &medium, &[sun(DVec3::Z, 1.0)], [0.0; 3]);
-    let tau = taus(gpu, beams.get()).remove(0);
-    assert!(tau.data.iter().all(|tau| tau.is_finite()));
-    // 65000 in half floats, whose spacing is 32 there.
-    assert!((tau.at([4, 4, 8]) - 65000.0).abs() < 32.0, "{}", tau.at([4, 4, 8]));
+    let suns = [sun(DVec3::Z, 1.0), sun(DVec3::Z, 2.0), sun(DVec3::Z, 3.0)];
+    let deepest = |beams: &Beams| taus(gpu, beams).iter().map(|tau| tau.at([4, 4, 8])).collect::<Vec<_>>();
+    // One or two beams are stored in 32 bits: six cells of 0.25 m.
+    let two = scene.propagate(gpu, &medium, &suns[..2], [0.0; 3]);
+    assert_close("32 bits", &deepest(two.get()), &[1.5e6; 2], 1e-5, 0.0);
+    let three = scene.propagate(gpu, &medium, &suns, [0.0; 3]);
+    assert_eq!(deepest(three.get()), [65504.0; 3]);
+    // Those of 32 bits are bounded when they are merged; a part is filled up to four with dark beams.
+    let one = scene.propagate(gpu, &medium, &suns[..1], [0.0; 3]);
+    let lattice = &medium.get::<Medium>().lattice;
+    let merged = Beams::merge(gpu, lattice, &[two.get(), one.get()]).unwrap();
+    assert_eq!(deepest(&merged)[..2], [65504.0; 2]);
+    assert_eq!(deepest(&merged)[4], 65504.0);
+    let extreme = Scene::new([8, 8, 8], Filling::Homogeneous, 1e38);
+    let medium = extreme.medium(gpu);
+    let beams = extreme.propagate(gpu, &medium, &suns[..1], [0.0; 3]);
+    assert_eq!(deepest(beams.get()), [f64::from(1e30_f32)]);
 }
 
 #[test]
