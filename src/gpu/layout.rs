@@ -1,4 +1,5 @@
-//! The check that a Rust struct and its WGSL mirror have the same members at the same offsets.
+//! The check that a Rust struct and its WGSL mirror have the same members at the same offsets, and that a
+//! constant which both state is the same.
 //!
 //! A struct that is sent to a shader is declared with [`mirror!`](crate::mirror), which keeps the
 //! list of its members; the tests of each node compare that list with what naga reads from the WGSL.
@@ -55,4 +56,19 @@ pub fn wgsl_members(shader: &Shader, name: &str) -> Result<(Vec<(String, usize)>
         _ => None,
     });
     found.ok_or_else(|| GpuError::Shader(format!("no struct {name} in the shader")))
+}
+
+/// A whole number that an expanded shader declares as `const NAME`.
+///
+/// # Errors
+/// [`GpuError::Shader`] where the shader is invalid or has no such number.
+pub fn wgsl_constant(shader: &Shader, name: &str) -> Result<i64, GpuError> {
+    let module = shader.validate()?;
+    let found = module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some(name));
+    let value = found.map(|(_, constant)| &module.global_expressions[constant.init]);
+    match value {
+        Some(naga::Expression::Literal(naga::Literal::I32(value))) => Ok(i64::from(*value)),
+        Some(naga::Expression::Literal(naga::Literal::U32(value))) => Ok(i64::from(*value)),
+        _ => Err(GpuError::Shader(format!("no whole number {name} in the shader"))),
+    }
 }

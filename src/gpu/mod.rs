@@ -24,7 +24,7 @@ pub(crate) mod testing;
 
 pub use device::{AdapterChoice, AdapterReport, Gpu, adapters};
 pub use field::{Buffer, Format, Sampler, Texture};
-pub use layout::{Mirror, wgsl_members};
+pub use layout::{Mirror, wgsl_constant, wgsl_members};
 pub use record::{Recorder, StageTime};
 pub use shader::{Shader, shader_names, shader_text};
 pub use stage::{Bind, Bound, Stage};

@@ -48,6 +48,9 @@ impl LineSet {
     /// All sets, fewest first.
     pub const ALL: [Self; 4] = [Self::Lines8, Self::Lines14, Self::Lines26, Self::Lines50];
 
+    /// Directions of the largest set.
+    pub const MOST: usize = Self::Lines50.count();
+
     /// Number of directions.
     pub const fn count(self) -> usize {
         match self {

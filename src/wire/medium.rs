@@ -62,7 +62,7 @@ mirror! {
     }
 }
 
-/// Edge of a block in cells; `BLOCK` of `shaders/lib/block.wgsl`.
+/// Edge of a block in cells.
 const BLOCK: usize = 8;
 
 /// What each block of cells holds at most, so that rays pass empty ones in one step.
@@ -109,5 +109,17 @@ impl Medium {
     /// Whether all channels scatter alike.
     pub fn is_grey(&self) -> bool {
         self.albedo.iter().all(|&albedo| albedo == self.albedo[0])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gpu::{Shader, wgsl_constant};
+
+    #[test]
+    fn blocks_are_as_large_in_the_shaders() {
+        let shader = Shader::expand("occupancy.wgsl", &[]).unwrap();
+        assert_eq!(wgsl_constant(&shader, "BLOCK").unwrap(), BLOCK as i64);
     }
 }

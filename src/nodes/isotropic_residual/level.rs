@@ -49,7 +49,7 @@ mirror! {
         n_pairs: u32,
         first_channel: u32,
         pad: u32,
-        directions: [DirectionTexel; 50],
+        directions: [DirectionTexel; LineSet::MOST],
     }
 }
 
