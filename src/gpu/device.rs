@@ -226,7 +226,7 @@ impl Gpu {
         self.memory.peak.swap(self.bytes_now(), Ordering::Relaxed)
     }
 
-    /// GPU time in ms of all that ran since the last call (wall time where the adapter has no timestamps).
+    /// GPU time in ms of all that ran since the last call (wall time of what has no timestamps).
     pub fn take_ms(&self) -> f64 {
         std::mem::take(&mut *self.gpu_ms.lock().unwrap())
     }

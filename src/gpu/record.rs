@@ -121,8 +121,8 @@ impl Recorder<'_> {
         self.stages.push(stage.to_owned());
     }
 
-    /// Submits, waits, and returns the milliseconds of GPU time (wall time where the adapter has
-    /// no timestamps), which [`Gpu::take_ms`] also counts.
+    /// Submits, waits, and returns the milliseconds of GPU time (wall time of what has no
+    /// timestamps), which [`Gpu::take_ms`] also counts.
     ///
     /// # Errors
     /// [`GpuError::Device`] with what the driver said; [`GpuError::OutOfMemory`], also where a stage that
@@ -142,20 +142,17 @@ impl Recorder<'_> {
         }
         self.gpu.check(&self.label)?;
         waited.map_err(|error| GpuError::Device(error.to_string()))?;
-        let Some(ticks) = ticks else {
-            self.gpu.add_ms(wall_ms);
-            return Ok(wall_ms);
+        let times = match ticks {
+            // Copies have no timestamps.
+            None => vec![StageTime { stage: self.label, gpu_ms: wall_ms }],
+            Some(ticks) => {
+                let ticks: Vec<u64> = self.gpu.read_buffer(&ticks)?;
+                let period = f64::from(self.gpu.queue.get_timestamp_period()) * 1e-6;
+                let ms = |pair: &[u64]| pair[1].saturating_sub(pair[0]) as f64 * period;
+                let named = ticks.chunks_exact(2).zip(self.stages);
+                named.map(|(pair, stage)| StageTime { stage, gpu_ms: ms(pair) }).collect()
+            }
         };
-        let ticks: Vec<u64> = self.gpu.read_buffer(&ticks)?;
-        let period = f64::from(self.gpu.queue.get_timestamp_period()) * 1e-6;
-        let times: Vec<StageTime> = ticks
-            .chunks_exact(2)
-            .zip(&self.stages)
-            .map(|(pair, stage)| StageTime {
-                stage: stage.clone(),
-                gpu_ms: pair[1].saturating_sub(pair[0]) as f64 * period,
-            })
-            .collect();
         self.gpu.add_stage_times(&times);
         let gpu_ms = times.iter().map(|time| time.gpu_ms).sum();
         self.gpu.add_ms(gpu_ms);
