@@ -1,7 +1,8 @@
 // A thread: one pixel, marched through the medium from the camera (DESIGN 6.5). Extinction along the ray
-// is sigma_t* = k sigma_t; light at a sample is single scattering, what the forward peak adds (table K),
-// and the residual lobe. Layers are kept apart. Everything is in index space; angles are those of the
-// world, since the map between them is a rotation and one scale.
+// is sigma_t* = k sigma_t; light at a sample is single scattering, what the forward peak adds, and the
+// residual lobe. Extinction is sampled in every step, light once in two: it varies less, and costs more.
+// Layers are kept apart. Everything is in index space; angles are those of the world, since the map between
+// them is a rotation and one scale.
 
 #import "lib/spectrum_{channels}.wgsl"
 #import "lib/walk.wgsl"
@@ -10,6 +11,8 @@
 #import "lib/lobe.wgsl"
 #import "lib/transmittance.wgsl"
 #import "raymarch/channels_{channels}.wgsl"
+#import "raymarch/beams.wgsl"
+#import "raymarch/beams.wgsl"
 
 struct MarchParams {
     shape: Shape,
@@ -70,7 +73,7 @@ struct Pixel {
 @group(1) @binding(2) var tau: texture_3d<f32>;
 @group(1) @binding(3) var<storage, read> beams: array<Beam>;
 @group(1) @binding(4) var moments: texture_3d<f32>;
-@group(1) @binding(5) var peak: texture_3d<f32>;
+@group(1) @binding(5) var peak: texture_2d<f32>;
 @group(1) @binding(6) var environment: texture_2d<f32>;
 @group(1) @binding(7) var linear_around: sampler;
 @group(1) @binding(8) var blocks: texture_3d<f32>;
@@ -78,11 +81,20 @@ struct Pixel {
 
 // Where less than this is left of a ray it ends.
 const OPAQUE: f32 = 1e-5;
-// The table of K: columns 255 sqrt(sin(theta/2)), rows 63 sqrt(x/60).
-const PEAK_SIZE: vec2f = vec2f(256.0, 64.0);
-const PEAK_X_MAX: f32 = 60.0;
-// Radius of the ball that has the volume of a cube, over the cube's edge.
-const BALL_PER_EDGE: f32 = 0.62;
+// Optical depth of two steps that counts as none: its square, and its product with OPAQUE, are numbers still.
+const VOID: f32 = 1e-18;
+
+// What this picture has. The rest is left out when the shader is compiled: on a device without real branches
+// it would cost as much as what is used.
+const HAS_VOXELS: bool = {voxels};
+const HAS_POINTS: bool = {points};
+const HAS_PEAK: bool = {peak};
+const HAS_RESIDUAL: bool = {residual};
+
+// A number where it is known when the shader is compiled: what is the same along the ray is then computed once.
+fn n_beams() -> u32 {
+    return {n_beams};
+}
 
 struct Layers {
     single: Spectrum,
@@ -100,13 +112,6 @@ fn environment_radiance(direction: vec3f) -> vec3f {
     let u = 0.5 - longitude / (2.0 * PI);
     let v = acos(clamp(direction.y, -1.0, 1.0)) / PI;
     return textureSampleLevel(environment, linear_around, vec2f(u, v), 0.0).xyz;
-}
-
-// K of one channel at x = albedo (tau_n + tau_c) and this column.
-fn forward_peak(x: f32, column: f32) -> f32 {
-    let row = sqrt(clamp(x, 0.0, PEAK_X_MAX) / PEAK_X_MAX) * (PEAK_SIZE.y - 1.0);
-    let at = (vec2f(column, row) + 0.5) / PEAK_SIZE;
-    return textureSampleLevel(peak, linear_clamp, vec3f(at, 0.5), 0.0).x;
 }
 
 // The residual lobe's radiance per unit of sigma_s*, towards the camera.
@@ -128,80 +133,55 @@ fn march(direction: vec3f) -> Layers {
         return layers;
     }
     let k = spectrum(params.k);
-    let albedo = spectrum(params.albedo);
     let scatter = spectrum(params.scatter);
-    let n_steps = ceil((span.y - span.x) / params.step);
-    let dt = (span.y - span.x) / n_steps;
+    let n_pairs = ceil((span.y - span.x) / (2.0 * params.step));
+    let dt = (span.y - span.x) / (2.0 * n_pairs);
     let length_m = dt * params.cell_m;
-    let near2 = BALL_PER_EDGE * BALL_PER_EDGE * dt * dt;
-    let tau_size = vec3f(textureDimensions(tau));
-    let corners = params.dims + 1u;
     // What is left of the ray: of light that nothing deflects, and of light that the forward peak may.
     var sharp = 1.0;
     var through = Spectrum(1.0);
-    for (var n = 0.0; n < n_steps; n += 1.0) {
-        let t = span.x + (n + 0.5) * dt;
-        let p = params.eye + t * direction;
-        var s = params.shape.sigma_t;
-        if params.shape.kind == VOXELS {
-            s = extinction(sigma_t, linear_clamp, p);
-        }
-        if s <= 0.0 {
-            let ahead = floor((empty_until(blocks, params.eye, direction, p) - span.x) / dt - 0.5);
-            n = max(n, ahead);
-            continue;
-        }
-        let step_tau = s * length_m;
-        // The middle of the step: its start would be up to 16 % too bright.
-        let tau_c = layers.tau + 0.5 * step_tau;
-        let kept = exp(-k * step_tau);
-        let reach_s = through * per_channel_mean(k * step_tau, kept) * step_tau;
-        let seen = sharp * exp(-step_tau);
-        layers.distance += (sharp - seen) * t;
-        sharp = seen;
-        through *= kept;
-        layers.tau += step_tau;
-
-        var single = Spectrum(0.0);
-        var forward = Spectrum(0.0);
-        for (var first = 0u; first < params.n_beams; first += PACK) {
-            let origin = vec3f(pack_origin(first / PACK, corners, params.packs_per_column));
-            let inside = clamp(p + 1.0, vec3f(0.5), vec3f(corners) - 0.5);
-            let depths = textureSampleLevel(tau, linear_clamp, (origin + inside) / tau_size, 0.0);
-            for (var m = 0u; m < min(PACK, params.n_beams - first); m += 1u) {
-                let beam = beams[first + m];
-                var travel = beam.place.xyz;
-                var power = spectrum(beam.power);
-                var reach = 1e30;
-                if beam.place.w > 0.0 {
-                    let line = p - beam.place.xyz;
-                    let r2 = dot(line, line);
-                    travel = line * inverseSqrt(max(r2, 1e-12));
-                    reach = sqrt(r2);
-                    // Within the ball that has the volume of a cube of a step the ball's mean, 3 / radius^2.
-                    let falloff = select(1.0 / max(r2, near2), 3.0 / near2, r2 < near2);
-                    power = power * (falloff / (params.cell_m * params.cell_m));
-                }
-                var tau_n = depths[m];
-                if params.shape.kind != VOXELS {
-                    let way = ray_shape(params.shape, p, -travel);
-                    tau_n = s * max(0.0, min(way.y, reach) - way.x) * params.cell_m;
-                }
-                let mu = clamp(-dot(travel, direction), -1.0, 1.0);
-                let reduced = exp(-k * tau_n);
-                let unscattered = min(exp(k * tau_c - (tau_n + tau_c)), reduced);
-                single += power * unscattered * henyey_greenstein(mu, params.g * beam.power.w);
-                if params.g > 0.0 {
-                    let column = (PEAK_SIZE.x - 1.0) * sqrt(sqrt(0.5 - 0.5 * mu));
-                    forward += power * (reduced - unscattered) * peak_of(albedo * (tau_n + tau_c), column);
-                }
+    for (var n = 0.0; n < n_pairs; n += 1.0) {
+        var t = vec2f(0.0);
+        var step_tau = vec2f(params.shape.sigma_t * length_m);
+        // On to the next matter, in a loop of its own: a void step then costs nothing of what a lit one does.
+        for (; n < n_pairs; n += 1.0) {
+            t = span.x + (2.0 * n + vec2f(0.5, 1.5)) * dt;
+            if !HAS_VOXELS {
+                break;
             }
+            let far = params.eye + t.y * direction;
+            step_tau.x = length_m * extinction(sigma_t, linear_clamp, params.eye + t.x * direction);
+            step_tau.y = length_m * extinction(sigma_t, linear_clamp, far);
+            if step_tau.x + step_tau.y > VOID {
+                break;
+            }
+            n = max(n, floor((empty_until(blocks, params.eye, direction, far) - span.x) / (2.0 * dt) - 0.75));
         }
-        layers.single += reach_s * albedo * single;
-        layers.forward += reach_s * albedo * forward;
-        if params.residual_channels > 0u {
-            layers.residual += reach_s * scatter * residual_of(p, direction);
+        if n >= n_pairs {
+            break;
         }
+
+        let kept_near = exp(-k * step_tau.x);
+        let kept_far = exp(-k * step_tau.y);
+        let near = through * step_tau.x * per_channel_mean(k * step_tau.x, kept_near);
+        let far = through * kept_near * step_tau.y * per_channel_mean(k * step_tau.y, kept_far);
+        let half_way = sharp * exp(-step_tau.x);
+        let end = half_way * exp(-step_tau.y);
+        let seen = vec2f(largest(near), largest(far)) / (largest(near) + largest(far));
+        let p = params.eye + dot(seen, t) * direction;
+        // Optical depths at the middle of the steps: at their starts the light would be up to 16 % too bright.
+        let tau_c = layers.tau + dot(seen, vec2f(0.5 * step_tau.x, step_tau.x + 0.5 * step_tau.y));
+        let segment = Segment(sharp - end, near + far, tau_c, 2.0 * dt);
+        let scattered = scatter_beams(segment, p, direction);
+        layers.single += scattered.single;
+        layers.forward += scattered.forward;
+        if HAS_RESIDUAL {
+            layers.residual += segment.reach * scatter * residual_of(p, direction);
+        }
+        layers.distance += dot(vec2f(sharp - half_way, half_way - end), t);
+        layers.tau += step_tau.x + step_tau.y;
+        sharp = end;
+        through *= kept_near * kept_far;
         if largest(through) < OPAQUE {
             break;
         }

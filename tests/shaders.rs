@@ -9,6 +9,11 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("channels", &["1", "3"]),
     ("format", &["r32float", "rgba16float", "rgba32float"]),
     ("pack", &["1", "4"]),
+    ("n_beams", &["0u", "2u", "params.n_beams"]),
+    ("voxels", &["true", "false"]),
+    ("points", &["true", "false"]),
+    ("peak", &["true", "false"]),
+    ("residual", &["true", "false"]),
 ];
 
 /// All ways to fill in the names that the text asks for.

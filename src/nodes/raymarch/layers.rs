@@ -25,13 +25,15 @@ impl Pixel {
 
 /// The picture of these pixels, row by row.
 pub(super) fn image(width: usize, height: usize, pixels: &[Pixel]) -> Image {
-    let three = |of: fn(&Pixel) -> &[f32; 4]| pixels.iter().flat_map(|p| of(p)[..3].to_vec()).collect();
+    let three = |of: fn(&Pixel) -> [f32; 4]| {
+        pixels.iter().map(of).flat_map(|[red, green, blue, _]| [red, green, blue]).collect()
+    };
     let one = |of: fn(&Pixel) -> f32| pixels.iter().map(of).collect();
-    let mut image = Image::new(width, height, three(|p| &p.beauty));
+    let mut image = Image::new(width, height, three(|p| p.beauty));
     image.insert(ALPHA, 1, one(|p| p.beauty[3]));
     image.insert(DEPTH, 1, one(|p| p.single[3]));
-    image.insert("single", 3, three(|p| &p.single));
-    image.insert("forward", 3, three(|p| &p.forward));
-    image.insert("residual", 3, three(|p| &p.residual));
+    image.insert("single", 3, three(|p| p.single));
+    image.insert("forward", 3, three(|p| p.forward));
+    image.insert("residual", 3, three(|p| p.residual));
     image
 }

@@ -15,7 +15,7 @@ use crate::light::environment::Environment;
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::peak;
-use crate::wire::{Beams, Channels, Medium, Residual, ShapeTexel};
+use crate::wire::{Beams, Channels, Medium, Place, Residual, ShapeTexel};
 
 mod layers;
 #[cfg(test)]
@@ -51,11 +51,9 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     outputs: &[PortSpec::new("image", PortType::Image, "radiance [W/(m2 sr)], linear Rec. 709, with layers")],
     params: &[
-        ParamSpec::float("step", 0.5)
-            .unit("cells")
-            .between(0.01, 4.0)
-            .soft(0.1, 2.0)
-            .doc("Length of a step along the ray."),
+        ParamSpec::float("step", 0.5).unit("cells").between(0.01, 4.0).soft(0.1, 2.0).doc(
+            "Longest step along the ray. Extinction is sampled in every step, light in every second one.",
+        ),
         ParamSpec::bool("background", true).doc("Whether the environment is seen behind the medium."),
         ParamSpec::int("samples", 1)
             .between(1.0, 256.0)
@@ -136,8 +134,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&medium.blocks),
     ];
 
-    let [pack, _] = beams.tau.choices();
-    let stage = gpu.stage("raymarch", &[("channels", channels.count.to_string()), pack])?;
+    let stage = gpu.stage("raymarch", &choices(medium, &beams, residual, channels))?;
     let row_bytes = size_of::<layers::Pixel>() * camera.width;
     let band = (BAND_BYTES / row_bytes).clamp(1, camera.height);
     let pixels = gpu.buffer("a band of pixels", (row_bytes * band) as u64, "lower camera.width")?;
@@ -163,6 +160,30 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let image = layers::image(camera.width, camera.height, &all);
     let bytes = image.layers.values().map(|layer| size_of_val(layer.data.as_slice()) as u64).sum();
     Ok(vec![Value::new::<Image>(PortType::Image, bytes, image)])
+}
+
+/// What the shader is compiled for.
+fn choices(
+    medium: &Medium,
+    beams: &Beams,
+    residual: Option<&Residual>,
+    channels: Channels,
+) -> [(&'static str, String); 7] {
+    let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
+    let [pack, _] = beams.tau.choices();
+    let n_beams = match beams.beams.len() {
+        n @ ..=4 => format!("{n}u"),
+        _ => "params.n_beams".to_owned(),
+    };
+    [
+        ("channels", channels.count.to_string()),
+        ("voxels", medium.homogeneous.is_none().to_string()),
+        ("points", points.to_string()),
+        ("peak", (medium.g > 0.0).to_string()),
+        ("residual", residual.is_some().to_string()),
+        ("n_beams", n_beams),
+        pack,
+    ]
 }
 
 /// One channel only where the residual has one of the same color.
@@ -233,11 +254,11 @@ fn params(
 
 /// The table of K for this g.
 fn peak_texture(gpu: &Gpu, g: f64) -> Result<Texture, GpuError> {
-    let dims = [peak::COLUMNS, peak::ROWS, 1];
+    let dims = [peak::COLUMNS, peak::ROWS];
     if g <= 0.0 {
-        return gpu.texture3("no forward peak", [1; 3], Format::R32Float, "");
+        return gpu.texture2_from("no forward peak", [1; 2], Format::R32Float, &[0.0_f32], "");
     }
-    gpu.texture3_from("forward peak", dims, Format::R32Float, &peak::peak_table(g), "")
+    gpu.texture2_from("forward peak", dims, Format::R32Float, &peak::peak_table(g), "")
 }
 
 /// What stands behind the medium.

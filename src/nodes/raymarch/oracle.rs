@@ -1,19 +1,20 @@
 //! f64 oracle of the raymarch: what a camera ray sees of the medium.
 //!
-//! March with the delta-scaled extinction sigma_t* = k sigma_t; at the middle of a step, with tau_c
-//! the camera's optical depth there and tau_c* = k tau_c, each beam n of unattenuated irradiance
-//! E_n arrives as E* = E_n e^{−k tau_n} and, never scattered, as E0 = E_n e^{−tau_n − tau_c +
-//! tau_c*}; S = Σ sigma_s \[E0 HG(g a0; mu) + (E* − E0) K(albedo (tau_n + tau_c); mu)\] + the
-//! residual's lobe + emission, and a step of length dl adds e^{−tau*} S (1 − e^{−sigma_t*
-//! dl})/sigma_t*. The first term is exact single scattering, the second the forward peak
-//! (`optics/peak.rs`). Behind the medium stands e^{−k tau} of a constant ambient radiance: e^{−tau}
-//! of it is seen sharp, the rest was scattered forward.
+//! March in pairs of steps. sigma_t is that of the middle of each step; light is evaluated once a pair,
+//! at the mean of the two middles weighted by how much of each is seen (in the clearest channel), with tau_c the camera's optical
+//! depth averaged alike. Integrated over the pair exactly, for what is constant in a step: of light that
+//! nothing deflects W0 = ∫ e^{−tau} sigma_t dl, of light scattered anew, where extinction is sigma_t* =
+//! k sigma_t, W = ∫ e^{−k tau} sigma_t dl. A beam of unattenuated irradiance E_n then adds albedo E_n
+//! \[W0 e^{−tau_n} HG(g a0; mu) + (W e^{−k tau_n} − W0 e^{−tau_n}) K(albedo (tau_n + tau_c); mu)\],
+//! the residual W times its lobe per sigma_t, and emission its own at each step. The first term is exact single
+//! scattering, the second the forward peak (`optics/peak.rs`). Behind the medium stands e^{−k tau} of
+//! a constant ambient radiance: e^{−tau} of it is seen sharp, the rest was scattered forward.
 //!
 //! In: index space as in `oracle_scene.rs`; sigma_t trilinear, zero outside; tau of the light
 //! trilinear between corners; the residual trilinear between centers; emission on the cells or on a
 //! grid finer by a whole number, trilinear, zero outside. Out: radiance by layers [W/(m² sr)].
 //! Limits: one table of K for all spreads a0; no environment stack; near a point light r⁻²
-//! is that of the step. Tested with closed forms; as a chain in `oracle_scene/tests.rs`.
+//! is that of the pair. Tested with closed forms; as a chain in `oracle_scene/tests.rs`.
 
 use glam::{DVec3, DVec4};
 
@@ -41,6 +42,8 @@ pub struct MarchScene<'a> {
     pub peak_table: &'a [f32],
     /// Longest step, in cells.
     pub step: f64,
+    /// The least k of all channels: what is seen of a step in it says where a pair is lit.
+    pub least_k: f64,
 }
 
 /// A ray in index space.
@@ -99,80 +102,94 @@ pub fn march_through(
     tau_to_light: impl Fn(usize, DVec3) -> f64,
 ) -> Marched {
     let mut seen = Marched::default();
-    let medium = scene.medium;
-    let scaled = medium.scaled();
+    let scaled = scene.medium.scaled();
     if let Some([start, end]) = interval {
-        let n_steps = ((end - start) / scene.step).ceil();
-        let step = (end - start) / n_steps;
-        let step_m = step * medium.h;
-        for index in 0..n_steps as usize {
-            let p = ray.origin + ray.direction * (start + (index as f64 + 0.5) * step);
-            let sigma_t = sigma_t_at(p);
-            let depth = sigma_t * scaled.k * step_m;
-            let weight = (-scaled.k * seen.tau).exp() * mean_transmittance(depth) * step_m;
-            if let Some(emission) = scene.emission {
-                seen.emission += weight * emission_at(medium, emission, p);
-            }
-            if sigma_t > 0.0 {
-                let tau_c = seen.tau + 0.5 * sigma_t * step_m;
-                let sigma_s = sigma_t * medium.albedo;
-                for (index, beam) in scene.beams.iter().enumerate() {
-                    let [single, forward] = beam_toward_eye(
-                        scene,
-                        &beam.light,
-                        p,
-                        ray.direction,
-                        [tau_to_light(index, p), tau_c],
-                        step_m,
-                    );
-                    seen.single += weight * sigma_s * single;
-                    seen.forward += weight * sigma_s * forward;
+        let n_pairs = (0.5 * (end - start) / scene.step).ceil();
+        let step = 0.5 * (end - start) / n_pairs;
+        let step_m = step * scene.medium.h;
+        for pair in 0..n_pairs as usize {
+            let mut segment = Segment { length_m: 2.0 * step_m, ..Default::default() };
+            // Weights, weighted t, weighted optical depth.
+            let mut toward = [0.0; 3];
+            for half in 0..2 {
+                let t = start + ((2 * pair + half) as f64 + 0.5) * step;
+                let p = ray.origin + ray.direction * t;
+                let sigma_t = sigma_t_at(p);
+                let depth = sigma_t * step_m;
+                let seen_m = (-scaled.k * seen.tau).exp() * mean_transmittance(scaled.k * depth) * step_m;
+                if let Some(emission) = scene.emission {
+                    seen.emission += seen_m * emission_at(scene.medium, emission, p);
                 }
-                let light = scene.residual.trilinear_clamp(p);
-                let sigma_s_star = sigma_t * scaled.sigma_s_ratio;
-                let flux = DVec3::new(light.y, light.z, light.w);
-                let lobe =
-                    SquaredLinearLobe::new(sigma_s_star * light.x, sigma_s_star * scaled.g_star * flux);
-                seen.residual += weight * lobe.eval(-ray.direction);
+                let reach = |k: f64| (-k * seen.tau).exp() * mean_transmittance(k * depth) * depth;
+                segment.sharp += reach(1.0);
+                segment.reach += reach(scaled.k);
+                for (sum, value) in toward.iter_mut().zip([1.0, t, seen.tau + 0.5 * depth]) {
+                    *sum += reach(scene.least_k) * value;
+                }
+                seen.tau += depth;
             }
-            seen.tau += sigma_t * step_m;
+            if toward[0] > 0.0 {
+                segment.tau_c = toward[2] / toward[0];
+                let p = ray.origin + ray.direction * (toward[1] / toward[0]);
+                add_light(&mut seen, scene, ray.direction, p, &segment, &tau_to_light);
+            }
         }
     }
     seen.background = scene.ambient * (-scaled.k * seen.tau).exp();
     seen
 }
 
-/// Radiance per sigma_s [W/(m² sr)] that a beam sends from `p` against the ray, scattered once, and
-/// by its forward peak; `taus` to the light and to the eye.
-fn beam_toward_eye(
-    scene: &MarchScene,
-    light: &BeamLight,
-    p: DVec3,
-    ray_direction: DVec3,
-    [tau_n, tau_c]: [f64; 2],
-    step_m: f64,
-) -> [f64; 2] {
-    let medium = scene.medium;
-    let irradiance = match *light {
-        BeamLight::Parallel { irradiance, .. } => irradiance,
-        BeamLight::Point { position_in_index, intensity } => {
-            intensity * inverse_square((p - position_in_index).length() * medium.h, step_m)
-        }
-    };
-    let mu = -light.direction_at(p).dot(ray_direction);
-    let k = medium.scaled().k;
-    let scaled = (-k * tau_n).exp();
-    // E0 ≤ E*, where rounding would have it otherwise too.
-    let unscattered = (-tau_n - tau_c + k * tau_c).exp().min(scaled);
-    let peak = peak::lookup(scene.peak_table, medium.albedo * (tau_n + tau_c), mu);
-    let single = irradiance * unscattered * hg(mu, medium.g * light.spread());
-    [single, irradiance * (scaled - unscattered) * peak]
+/// Two steps of a ray whose light is evaluated at one point.
+#[derive(Clone, Copy, Debug, Default)]
+struct Segment {
+    /// W0 of the module's text.
+    sharp: f64,
+    /// W.
+    reach: f64,
+    /// Optical depth from the eye to the point.
+    tau_c: f64,
+    /// Of both steps.
+    length_m: f64,
 }
 
-/// r⁻² [1/m²] at the distance `r_m` from a point light, as a step sees it: within the ball whose
-/// volume is the cube of the step it is the ball's mean, 3/radius², so it is finite everywhere.
-fn inverse_square(r_m: f64, step_m: f64) -> f64 {
-    let radius = BALL_RADIUS_PER_EDGE * step_m;
+/// Adds what the beams and the residual send from a segment whose point is `p`.
+fn add_light(
+    seen: &mut Marched,
+    scene: &MarchScene,
+    ray_direction: DVec3,
+    p: DVec3,
+    segment: &Segment,
+    tau_to_light: impl Fn(usize, DVec3) -> f64,
+) {
+    let medium = scene.medium;
+    let scaled = medium.scaled();
+    for (index, beam) in scene.beams.iter().enumerate() {
+        let irradiance = match beam.light {
+            BeamLight::Parallel { irradiance, .. } => irradiance,
+            BeamLight::Point { position_in_index, intensity } => {
+                intensity * inverse_square((p - position_in_index).length() * medium.h, segment.length_m)
+            }
+        };
+        let mu = -beam.light.direction_at(p).dot(ray_direction);
+        let tau_n = tau_to_light(index, p);
+        let unscattered = segment.sharp * (-tau_n).exp();
+        let deflected = (segment.reach * (-scaled.k * tau_n).exp() - unscattered).max(0.0);
+        let peak = peak::lookup(scene.peak_table, medium.albedo * (tau_n + segment.tau_c), mu);
+        let power = medium.albedo * irradiance;
+        seen.single += power * unscattered * hg(mu, medium.g * beam.light.spread());
+        seen.forward += power * deflected * peak;
+    }
+    let light = scene.residual.trilinear_clamp(p);
+    let flux = DVec3::new(light.y, light.z, light.w);
+    let ratio = scaled.sigma_s_ratio;
+    let lobe = SquaredLinearLobe::new(ratio * light.x, ratio * scaled.g_star * flux);
+    seen.residual += segment.reach * lobe.eval(-ray_direction);
+}
+
+/// r⁻² [1/m²] at the distance `r_m` from a point light, as a segment sees it: within the ball whose
+/// volume is the cube of its length it is the ball's mean, 3/radius², so it is finite everywhere.
+fn inverse_square(r_m: f64, length_m: f64) -> f64 {
+    let radius = BALL_RADIUS_PER_EDGE * length_m;
     if r_m < radius { 3.0 / (radius * radius) } else { 1.0 / (r_m * r_m) }
 }
 

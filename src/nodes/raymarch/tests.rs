@@ -79,6 +79,7 @@ fn expected(scene: &Scene, channel: usize, lit: &Lit, rays: &[Ray]) -> Vec<March
         ambient: lit.beams.ambient[channel],
         peak_table: &table,
         step: 0.5,
+        least_k: (0..3).map(|c| scene.oracle(c).scaled().k).fold(1.0, f64::min),
     };
     let high = DVec3::from_array(scene.sigma_t.dims.map(|n| (n - 1) as f64));
     let see = |ray: &Ray| {
@@ -279,7 +280,15 @@ fn constant_light_is_seen_through_anything_at_albedo_one() {
 #[test]
 fn layouts_are_those_of_the_shader() {
     for channels in ["1", "3"] {
-        let choices = [("channels", channels), ("pack", "4")];
+        let choices = [
+            ("channels", channels),
+            ("pack", "4"),
+            ("voxels", "true"),
+            ("points", "true"),
+            ("peak", "true"),
+            ("residual", "true"),
+            ("n_beams", "params.n_beams"),
+        ];
         assert_layout::<MarchParams>("raymarch.wgsl", "MarchParams", &choices);
         assert_layout::<Pixel>("raymarch.wgsl", "Pixel", &choices);
     }

@@ -69,6 +69,7 @@ fn mean_radiance(
         ambient: 0.0,
         peak_table: &peak_table,
         step: 0.5,
+        least_k: medium.scaled().k,
     };
     let across = DVec3::Y.cross(view).normalize();
     let up = view.cross(across);

@@ -1,0 +1,78 @@
+// Light of the beams that a stretch of a view ray sends to the eye (DESIGN 6.5): scattered once, and what
+// the forward peak adds to it (table K).
+
+// The table of K: columns 255 sqrt(sin(theta/2)), rows 63 sqrt(x/60).
+const PEAK_SIZE: vec2f = vec2f(256.0, 64.0);
+const PEAK_X_MAX: f32 = 60.0;
+// Radius of the ball that has the volume of a cube, over the cube's edge.
+const BALL_PER_EDGE: f32 = 0.62;
+
+// Two steps of a ray, whose light is evaluated at one point.
+struct Segment {
+    // Integral of sigma_t over what is left of the ray: of light that nothing deflects, ...
+    sharp: f32,
+    // ... and of light that the forward peak may deflect.
+    reach: Spectrum,
+    // Unscaled optical depth from the eye to the point.
+    tau_c: f32,
+    // [cells]
+    length: f32,
+}
+
+struct Scattered {
+    single: Spectrum,
+    forward: Spectrum,
+}
+
+// K of one channel at x = albedo (tau_n + tau_c) and this column.
+fn forward_peak(x: f32, column: f32) -> f32 {
+    let row = sqrt(clamp(x, 0.0, PEAK_X_MAX) / PEAK_X_MAX) * (PEAK_SIZE.y - 1.0);
+    return textureSampleLevel(peak, linear_clamp, (vec2f(column, row) + 0.5) / PEAK_SIZE, 0.0).x;
+}
+
+// The light of a segment whose point is p, towards the eye of a ray with this direction.
+fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
+    let k = spectrum(params.k);
+    let albedo = spectrum(params.albedo);
+    let near = BALL_PER_EDGE * segment.length;
+    let near2 = near * near;
+    let tau_size = vec3f(textureDimensions(tau));
+    let corners = params.dims + 1u;
+    let inside = clamp(p + 1.0, vec3f(0.5), vec3f(corners) - 0.5);
+    var scattered: Scattered;
+    for (var first = 0u; first < n_beams(); first += PACK) {
+        let origin = vec3f(pack_origin(first / PACK, corners, params.packs_per_column));
+        let depths = textureSampleLevel(tau, linear_clamp, (origin + inside) / tau_size, 0.0);
+        for (var m = 0u; m < min(PACK, n_beams() - first); m += 1u) {
+            let beam = beams[first + m];
+            var travel = beam.place.xyz;
+            var power = spectrum(beam.power);
+            var reach = 1e30;
+            if HAS_POINTS && beam.place.w > 0.0 {
+                let line = p - beam.place.xyz;
+                let r2 = dot(line, line);
+                travel = line * inverseSqrt(max(r2, 1e-12));
+                reach = sqrt(r2);
+                // Within the ball that has the volume of a cube of the segment's length the ball's mean, 3 / radius^2.
+                let falloff = select(1.0 / max(r2, near2), 3.0 / near2, r2 < near2);
+                power = power * (falloff / (params.cell_m * params.cell_m));
+            }
+            var tau_n = depths[m];
+            if !HAS_VOXELS {
+                let way = ray_shape(params.shape, p, -travel);
+                tau_n = params.shape.sigma_t * max(0.0, min(way.y, reach) - way.x) * params.cell_m;
+            }
+            let mu = clamp(-dot(travel, direction), -1.0, 1.0);
+            let unscattered = segment.sharp * exp(-tau_n);
+            scattered.single += power * unscattered * henyey_greenstein(mu, params.g * beam.power.w);
+            if HAS_PEAK {
+                let column = (PEAK_SIZE.x - 1.0) * sqrt(sqrt(0.5 - 0.5 * mu));
+                let deflected = max(segment.reach * exp(-k * tau_n) - unscattered, Spectrum(0.0));
+                scattered.forward += power * deflected * peak_of(albedo * (tau_n + segment.tau_c), column);
+            }
+        }
+    }
+    scattered.single *= albedo;
+    scattered.forward *= albedo;
+    return scattered;
+}
