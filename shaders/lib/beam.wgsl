@@ -5,6 +5,9 @@ struct Beam {
     place: vec4f,
     // Irradiance [W/m2] or intensity [W/sr] in xyz, spread a0 in w.
     power: vec4f,
+    // Cosines of the angles up to which all, and from which none, of what it scatters comes from the
+    // environment's stack instead; 2 and 2 for a beam that keeps all.
+    window: vec4f,
 }
 
 // Beams whose optical depths share a texel of the atlas.

@@ -5,6 +5,7 @@
 //! spread, and the constant part of an environment into `ambient`, which needs no beams.
 
 pub mod environment;
+pub mod importance;
 
 use glam::DVec3;
 
@@ -36,8 +37,30 @@ pub struct Ordinate {
     pub direction: DVec3,
     /// On a plane across it [W/m²].
     pub irradiance: [f64; 3],
-    /// Length of the region's mean direction, in (0, 1].
+    /// Spread that its beams use, in (0, 1]: of a sun its disk's mean cosine, of a region 1 until prefilter
+    /// sets it.
     pub a0: f64,
+    /// Of an environment's region the length of its mean direction, in (0, 1].
+    pub region: Option<f64>,
+    /// Set where what goes nearly straight on comes from the environment's stack instead.
+    pub window: Option<Window>,
+}
+
+/// The angles between which light goes over from an environment's stack to its ordinates: all of what is
+/// scattered by less than `inner_deg` is the stack's, none of what is scattered by more than `outer_deg`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Window {
+    /// Where the ordinates' share begins [deg].
+    pub inner_deg: f64,
+    /// Where the stack's share ends [deg].
+    pub outer_deg: f64,
+}
+
+impl Window {
+    /// Cosines of the inner and the outer angle.
+    pub fn cosines(self) -> [f64; 2] {
+        [self.inner_deg, self.outer_deg].map(|angle| angle.to_radians().cos())
+    }
 }
 
 /// What a decomposition gives.

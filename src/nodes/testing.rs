@@ -183,6 +183,8 @@ impl Scene {
                 direction: world_from_index.transform_vector3(direction).normalize(),
                 irradiance: light.power,
                 a0: light.a0,
+                region: None,
+                window: light.window,
             }),
         });
         let ordinates = Ordinates { ordinates: ordinates.collect(), ambient };
@@ -194,12 +196,12 @@ impl Scene {
 
 /// White parallel light along a direction of index space.
 pub fn sun(direction: DVec3, irradiance: f64) -> Beam {
-    Beam { place: Place::Parallel(direction.normalize()), power: [irradiance; 3], a0: 1.0 }
+    Beam { place: Place::Parallel(direction.normalize()), power: [irradiance; 3], a0: 1.0, window: None }
 }
 
 /// A white point light at a position of index space.
 pub fn point(position: DVec3, intensity: f64) -> Beam {
-    Beam { place: Place::Point(position), power: [intensity; 3], a0: 1.0 }
+    Beam { place: Place::Point(position), power: [intensity; 3], a0: 1.0, window: None }
 }
 
 /// A channel of a beam for the oracle, in the f32 numbers that the shaders get.

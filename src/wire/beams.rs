@@ -5,6 +5,7 @@ use std::sync::Arc;
 use glam::DVec3;
 
 use crate::gpu::{Bind, Format, Gpu, GpuError, Recorder, Texture};
+use crate::light::Window;
 use crate::mirror;
 use crate::volume::Lattice;
 
@@ -26,6 +27,8 @@ pub struct Beam {
     pub power: [f64; 3],
     /// Spread of the region it stands for, in (0, 1].
     pub a0: f64,
+    /// Where its forward share comes from the environment's stack.
+    pub window: Option<Window>,
 }
 
 /// Beams with their optical depths.
@@ -63,6 +66,8 @@ mirror! {
         place: [f32; 4],
         /// Power of three channels, and a0.
         power: [f32; 4],
+        /// Cosines of the window's inner and outer angle; 2 and 2, which no cosine reaches, for none.
+        window: [f32; 4],
     }
 }
 
@@ -74,9 +79,11 @@ impl Beam {
             Place::Point(position) => (position, 1.0),
         };
         let power = power.map(|p| p as f32);
+        let [inner, outer] = self.window.map_or([2.0; 2], Window::cosines);
         BeamTexel {
             place: place.as_vec3().extend(point).to_array(),
             power: [power[0], power[1], power[2], self.a0 as f32],
+            window: [inner as f32, outer as f32, 0.0, 0.0],
         }
     }
 }

@@ -3,20 +3,24 @@
 use super::{NodeKind, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::light::environment::Environment;
+use crate::light::importance::Importance;
 use crate::light::{Light, Ordinate, Ordinates};
 
+mod median_cut;
+mod region;
+mod summed_area;
 mod uniform;
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "light_decomposition",
-    version: 1,
+    version: 2,
     category: Category::Light,
     purpose: "Splits all light from afar into principal ordinates.",
     doc: "Suns pass through as they are. Of an environment, the constant part (its minimum over all directions, per channel) \
-          becomes ambient light, which needs no beams; the rest is split into regions of even solid angle, each a beam with the \
-          region's irradiance, its mean direction and its spread.",
+          becomes ambient light, which needs no beams; the rest is split into regions, each a beam with the region's irradiance \
+          and its mean direction. How wide a region is counts where prefilter says so.",
     inputs: &[
         PortSpec::new(
             "environment",
@@ -27,6 +31,12 @@ static SPEC: NodeSpec = NodeSpec {
         PortSpec::new("lights", PortType::Light, "suns; without them there is only the environment")
             .many()
             .optional(),
+        PortSpec::new(
+            "importance",
+            PortType::Importance,
+            "where light matters to the picture: there median_cut makes smaller regions; without it all light counts alike",
+        )
+        .optional(),
     ],
     outputs: &[PortSpec::new("ordinates", PortType::Ordinates, "the beams, for principal_propagation")],
     params: &[
@@ -34,7 +44,9 @@ static SPEC: NodeSpec = NodeSpec {
             .between(1.0, 1024.0)
             .soft(4.0, 128.0)
             .doc("How many ordinates an environment is split into."),
-        ParamSpec::choice("method", &["uniform"]).doc("uniform: regions of even solid angle."),
+        ParamSpec::choice("method", &["median_cut", "uniform"]).doc(
+            "median_cut: regions of even luminance times importance; uniform: regions of even solid angle.",
+        ),
     ],
 };
 
@@ -47,6 +59,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
                 irradiance: *irradiance,
                 // Mean cosine over the disk's cap.
                 a0: 0.5 * (1.0 + (0.5 * angular_diameter_deg.to_radians()).cos()),
+                region: None,
+                window: None,
             }),
             Light::Point { .. } => {
                 return Err(NodeError::new(
@@ -57,7 +71,11 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     }
     if let Some(environment) = run.inputs.maybe::<Environment>("environment") {
         light.ambient = environment.minimum();
-        let (ordinates, from_all_sides) = uniform::split(environment, run.params.i64("count") as usize);
+        let count = run.params.i64("count") as usize;
+        let (ordinates, from_all_sides) = match run.params.text("method") {
+            "uniform" => uniform::split(environment, count),
+            _ => median_cut::split(environment, count, run.inputs.maybe::<Importance>("importance")),
+        };
         light.ordinates.extend(ordinates);
         for (ambient, radiance) in light.ambient.iter_mut().zip(from_all_sides) {
             *ambient += radiance;

@@ -52,11 +52,14 @@ fn constants_are_ambient_and_maps_keep_their_power() {
     let map = Map { width: 32, height: 16, texels: Arc::new(texels), scale: 0.5, rotate_y: 0.3 };
     let expected = 0.5 * 3.0 * 32.0 * map.solid_angle(4);
     let map = Value::new(PortType::Environment, 0, Environment::Map(map));
-    let light = output(gpu, "light_decomposition", json!({ "count": 12 }), &[("environment", &map)]);
-    let light: &Ordinates = light.get();
-    assert_eq!(light.ambient, [1.0; 3]);
-    assert!((2..=12).contains(&light.ordinates.len()));
-    let power: f64 = light.ordinates.iter().map(|ordinate| ordinate.irradiance[1]).sum();
-    // A sum of 32 texels.
-    assert!((power / expected - 1.0).abs() < 1e-13, "{power} against {expected}");
+    for method in ["median_cut", "uniform"] {
+        let params = json!({ "count": 12, "method": method });
+        let light = output(gpu, "light_decomposition", params, &[("environment", &map)]);
+        let light: &Ordinates = light.get();
+        assert_eq!(light.ambient, [1.0; 3]);
+        assert!((2..=12).contains(&light.ordinates.len()));
+        let power: f64 = light.ordinates.iter().map(|ordinate| ordinate.irradiance[1]).sum();
+        // A sum of 32 texels.
+        assert!((power / expected - 1.0).abs() < 1e-13, "{method}: {power} against {expected}");
+    }
 }

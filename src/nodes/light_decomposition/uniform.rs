@@ -2,87 +2,46 @@
 //!
 //! The partition is Leopardi's (A partition of the unit sphere into regions of equal area and small
 //! diameter, 2006): two polar caps and collars of equal regions. A texel belongs to the region its
-//! center lies in. Of a region: E = Σ L dω (per channel), direction and a0 the luminance-weighted mean.
+//! center lies in. Tested by the areas of its regions and by the light they keep.
 
 use std::f64::consts::PI;
 
-use glam::DVec3;
 use rayon::prelude::*;
 
+use super::region::{Excess, Region, ordinates};
 use crate::light::Ordinate;
-use crate::light::environment::{Environment, Map};
-use crate::optics::spectrum::luminance;
+use crate::light::environment::Environment;
 
-/// The ordinates of what an environment has beyond its minimum, black regions left out, and the radiance of
-/// regions that shine from all sides alike: they have no direction, and join the ambient.
+/// The ordinates of what an environment has beyond its minimum, and the radiance of what has no direction.
 pub(super) fn split(environment: &Environment, count: usize) -> (Vec<Ordinate>, [f64; 3]) {
     let Environment::Map(map) = environment else {
         return Default::default();
     };
-    let minimum = environment.minimum();
+    let excess = Excess::new(map, environment.minimum());
     let partition = Partition::new(count);
     let sums = (0..map.height)
         .into_par_iter()
-        .map(|row| sum_row(map, row, minimum, &partition))
+        .map(|row| sum_row(&excess, row, &partition))
         .collect::<Vec<_>>()
         .into_iter()
         // In order of the rows, so that the sums are the same on every run.
         .fold(vec![Region::default(); count], |mut all, row| {
-            for (region, part) in all.iter_mut().zip(row) {
-                region.add(part.irradiance, part.weight, part.direction);
+            for (region, part) in all.iter_mut().zip(&row) {
+                region.add(part);
             }
             all
         });
-    let mut from_all_sides = [0.0; 3];
-    for region in sums.iter().filter(|region| region.ordinate().is_none()) {
-        for (sum, e) in from_all_sides.iter_mut().zip(region.irradiance) {
-            *sum += e / (4.0 * PI);
-        }
-    }
-    (sums.iter().filter_map(Region::ordinate).collect(), from_all_sides)
+    ordinates(&sums)
 }
 
-fn sum_row(map: &Map, row: usize, minimum: [f64; 3], partition: &Partition) -> Vec<Region> {
+fn sum_row(excess: &Excess, row: usize, partition: &Partition) -> Vec<Region> {
     let mut regions = vec![Region::default(); partition.count];
-    let solid_angle = map.solid_angle(row);
-    let v = (row as f64 + 0.5) / map.height as f64;
-    for column in 0..map.width {
-        let u = (column as f64 + 0.5) / map.width as f64;
-        let texel = map.texels[row * map.width + column];
-        let irradiance =
-            std::array::from_fn(|c| (f64::from(texel[c]) * map.scale - minimum[c]).max(0.0) * solid_angle);
-        let weight = luminance(irradiance);
-        regions[partition.find(PI * v, 2.0 * PI * u)].add(irradiance, weight, map.direction(u, v) * weight);
+    let v = (row as f64 + 0.5) / excess.map.height as f64;
+    for (column, texel) in excess.texels(row, 0..excess.map.width).enumerate() {
+        let u = (column as f64 + 0.5) / excess.map.width as f64;
+        regions[partition.find(PI * v, 2.0 * PI * u)].add(&texel);
     }
     regions
-}
-
-#[derive(Clone, Copy, Default)]
-struct Region {
-    irradiance: [f64; 3],
-    /// Luminance, and the direction times it.
-    weight: f64,
-    direction: DVec3,
-}
-
-impl Region {
-    fn add(&mut self, irradiance: [f64; 3], weight: f64, direction: DVec3) {
-        for (sum, e) in self.irradiance.iter_mut().zip(irradiance) {
-            *sum += e;
-        }
-        self.weight += weight;
-        self.direction += direction;
-    }
-
-    fn ordinate(&self) -> Option<Ordinate> {
-        let mean = self.direction / self.weight;
-        let a0 = mean.length();
-        (self.weight > 0.0 && a0 > 1e-9).then(|| Ordinate {
-            direction: -mean / a0,
-            irradiance: self.irradiance,
-            a0: a0.min(1.0),
-        })
-    }
 }
 
 struct Partition {
@@ -130,6 +89,7 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
+    use crate::light::environment::Map;
 
     fn map(texel: impl Fn(usize, usize) -> [f32; 3]) -> Environment {
         let (width, height) = (256, 128);
@@ -156,11 +116,9 @@ mod tests {
                 assert!((kept / exact - 1.0).abs() < 1e-11, "count {count}: {kept} {exact}");
             }
             assert!(ordinates.len() <= count);
-            assert!(
-                ordinates
-                    .iter()
-                    .all(|o| o.a0 > 0.0 && o.a0 <= 1.0 && (o.direction.length() - 1.0).abs() < 1e-12)
-            );
+            assert!(ordinates.iter().all(|o| o.region > Some(0.0)
+                && o.region <= Some(1.0)
+                && (o.direction.length() - 1.0).abs() < 1e-12));
         }
     }
 
@@ -185,7 +143,7 @@ mod tests {
         let environment = map(|x, y| if (x, y) == (10, 20) { [1e5; 3] } else { [0.0; 3] });
         let (ordinates, _) = split(&environment, 32);
         assert_eq!(ordinates.len(), 1);
-        assert!((ordinates[0].a0 - 1.0).abs() < 1e-12);
+        assert!(ordinates[0].a0 == 1.0 && ordinates[0].region > Some(1.0 - 1e-12));
         assert_eq!(split(&map(|_, _| [0.0; 3]), 32), (vec![], [0.0; 3]));
         assert_eq!(split(&Environment::Constant([1.0; 3]), 32), (vec![], [0.0; 3]));
     }

@@ -43,6 +43,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             place: Place::Parallel(medium.lattice.direction_in_index(ordinate.direction)),
             power: ordinate.irradiance,
             a0: ordinate.a0,
+            window: ordinate.window,
         })
         .collect();
     let scans = match run.params.text("scheme") {

@@ -37,6 +37,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
                 place: Place::Point(index_from_world.transform_point3(*position)),
                 power: *intensity,
                 a0: 1.0,
+                window: None,
             }),
             Light::Sun { .. } => Err(NodeError::new(
                 "lights takes point lights, found a sun: wire the sun to light_decomposition.lights",
