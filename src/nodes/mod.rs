@@ -19,6 +19,7 @@ mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
 mod medium;
+mod mesh;
 #[cfg(test)]
 mod oracle_scene;
 mod point_light;
@@ -42,6 +43,7 @@ pub static KINDS: &[NodeKind] = &[
     sun::KIND,
     point_light::KIND,
     environment::KIND,
+    mesh::KIND,
     camera::KIND,
     light_decomposition::KIND,
     principal_propagation::KIND,
