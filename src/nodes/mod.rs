@@ -15,6 +15,8 @@ mod camera;
 mod environment;
 #[cfg(test)]
 mod extremes;
+#[cfg(test)]
+mod hits;
 mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
