@@ -2,8 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::testing::{Filling, Random, Scene, assert_layout, gpu};
-use crate::geometry::Mesh;
+use super::testing::{Filling, Random, Scene, assert_layout, gpu, mesh};
 use crate::geometry::oracle::{Ray, nearest};
 use crate::gpu::{Bind, Gpu};
 use crate::mirror;
@@ -45,13 +44,6 @@ const FAR: f32 = 1e6;
 
 fn lattice() -> Lattice {
     Scene::new([4, 4, 4], Filling::Homogeneous, 1.0).lattice()
-}
-
-/// A mesh of these triangles of index space, apart from each other.
-pub(super) fn mesh(lattice: &Lattice, triangles: &[[DVec3; 3]], reflectance: [f64; 3]) -> Mesh {
-    let positions = triangles.iter().flatten().map(|p| lattice.world_from_index.transform_point3(*p));
-    let corners = (0..triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]);
-    Mesh { positions: positions.collect(), triangles: corners.collect(), reflectance, n_degenerate: 0 }
 }
 
 fn find(gpu: &Gpu, surfaces: &Surfaces, rays: &[(Vec3, Vec3, f32)]) -> Vec<HitsFound> {
@@ -146,7 +138,7 @@ fn the_gpu_finds_what_trying_all_finds() {
 }
 
 /// A ball of radius 10 around `center`: an octahedron whose faces were cut in four, so many times.
-pub(super) fn ball(center: DVec3, n_cuts: usize) -> Vec<[DVec3; 3]> {
+fn ball(center: DVec3, n_cuts: usize) -> Vec<[DVec3; 3]> {
     let axes = [
         (DVec3::X, DVec3::Y),
         (DVec3::Y, DVec3::NEG_X),

@@ -28,6 +28,7 @@ mod point_light;
 mod principal_propagation;
 mod raymarch;
 mod save_image;
+mod shadow;
 mod shape;
 mod spherical_propagation;
 mod sun;
