@@ -3,6 +3,7 @@
 #![warn(missing_docs)]
 
 pub mod camera;
+pub mod geometry;
 pub mod gpu;
 pub mod graph;
 pub mod image;

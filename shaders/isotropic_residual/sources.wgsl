@@ -2,6 +2,7 @@
 
 #import "isotropic_residual/common.wgsl"
 #import "lib/beam.wgsl"
+#import "lib/shadow.wgsl"
 #import "lib/transmittance.wgsl"
 
 struct SourceParams {
@@ -24,9 +25,20 @@ fn depth_between(a: f32, b: f32) -> f32 {
 }
 
 // Mean of exp(-k tau) over a cell from its corners, numbered x + 2y + 4z: along `axis` first, then along
-// the other two. Exact where tau is linear, so what a beam gives to cells is what it loses.
+// the other two. Exact where tau is linear, so what a beam gives to cells is what it loses. Where the
+// edge of a shadow crosses the cell, the mean over the corners, of which the hidden ones have no light.
 fn cell_mean(t: array<f32, 8>, k: f32, axis: u32) -> f32 {
     var corners = t;
+    var n_lit = 0.0;
+    var lit = 0.0;
+    for (var n = 0u; n < 8u; n += 1u) {
+        let sees_light = !is_hidden(corners[n]);
+        n_lit += select(0.0, 1.0, sees_light);
+        lit += select(0.0, exp(-k * corners[n]), sees_light);
+    }
+    if n_lit < 8.0 {
+        return lit / 8.0;
+    }
     let first = 1u << axis;
     let second = 1u << ((axis + 1u) % 3u);
     let third = 1u << ((axis + 2u) % 3u);

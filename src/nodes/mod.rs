@@ -14,16 +14,20 @@ mod camera;
 mod environment;
 #[cfg(test)]
 mod extremes;
+#[cfg(test)]
+mod hits;
 mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
 mod medium;
+mod mesh;
 #[cfg(test)]
 mod oracle_scene;
 mod point_light;
 mod principal_propagation;
 mod raymarch;
 mod save_image;
+mod shadow;
 mod shape;
 mod spherical_propagation;
 mod sun;
@@ -41,6 +45,7 @@ pub static KINDS: &[NodeKind] = &[
     sun::KIND,
     point_light::KIND,
     environment::KIND,
+    mesh::KIND,
     camera::KIND,
     light_decomposition::KIND,
     principal_propagation::KIND,

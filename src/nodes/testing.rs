@@ -14,6 +14,7 @@ use serde_json::{Map, Value as Json};
 
 use super::oracle_scene::{BeamLight, OracleMedium};
 use super::{NodeError, Run, kind};
+use crate::geometry::Mesh;
 pub use crate::gpu::testing::gpu;
 use crate::gpu::{Format, Gpu, Mirror, Shader, wgsl_members};
 use crate::graph::{CancelToken, Inputs, Params, PortType, Value};
@@ -162,7 +163,21 @@ impl Scene {
 
     /// What the propagation nodes make of these lights, all parallel or all points.
     pub fn propagate(&self, gpu: &Gpu, medium: &Value, lights: &[Beam], ambient: [f64; 3]) -> Value {
+        self.propagate_behind(gpu, medium, lights, ambient, &[])
+    }
+
+    /// The same behind surfaces.
+    pub fn propagate_behind(
+        &self,
+        gpu: &Gpu,
+        medium: &Value,
+        lights: &[Beam],
+        ambient: [f64; 3],
+        surfaces: &[&Value],
+    ) -> Value {
         let world_from_index = self.lattice().world_from_index;
+        let mut inputs = vec![("medium", medium)];
+        inputs.extend(surfaces.iter().map(|surface| ("surfaces", *surface)));
         let point = |light: &Beam| match light.place {
             Place::Parallel(_) => None,
             Place::Point(position) => {
@@ -173,7 +188,6 @@ impl Scene {
         };
         let points: Vec<Value> = lights.iter().filter_map(point).collect();
         if !points.is_empty() {
-            let mut inputs = vec![("medium", medium)];
             inputs.extend(points.iter().map(|point| ("lights", point)));
             return output(gpu, "spherical_propagation", Json::Object(Map::new()), &inputs);
         }
@@ -189,9 +203,28 @@ impl Scene {
         });
         let ordinates = Ordinates { ordinates: ordinates.collect(), ambient };
         let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
-        let inputs = [("medium", medium), ("ordinates", &ordinates)];
+        inputs.push(("ordinates", &ordinates));
         output(gpu, "principal_propagation", Json::Object(Map::new()), &inputs)
     }
+
+    /// These triangles of index space as a surface of the world, grey of 0.5.
+    pub fn surface(&self, triangles: &[[DVec3; 3]]) -> Value {
+        Value::new::<Mesh>(PortType::Surface, 0, mesh(&self.lattice(), triangles, [0.5; 3]))
+    }
+
+    /// A rectangle of index space across z.
+    pub fn plate(&self, low: [f64; 2], high: [f64; 2], z: f64) -> Value {
+        let [a, b, c, d] = [(low[0], low[1]), (high[0], low[1]), (high[0], high[1]), (low[0], high[1])]
+            .map(|(x, y)| DVec3::new(x, y, z));
+        self.surface(&[[a, b, c], [a, c, d]])
+    }
+}
+
+/// A mesh of these triangles of index space, apart from each other.
+pub fn mesh(lattice: &Lattice, triangles: &[[DVec3; 3]], reflectance: [f64; 3]) -> Mesh {
+    let positions = triangles.iter().flatten().map(|p| lattice.world_from_index.transform_point3(*p));
+    let corners = (0..triangles.len() as u32).map(|n| [3 * n, 3 * n + 1, 3 * n + 2]);
+    Mesh { positions: positions.collect(), triangles: corners.collect(), reflectance, n_degenerate: 0 }
 }
 
 /// White parallel light along a direction of index space.

@@ -42,6 +42,9 @@ pub struct Beams {
     pub ambient: [f64; 3],
     /// The grid of the medium that they went through.
     pub lattice: Lattice,
+    /// Whether surfaces were in the way: only then are corners of the atlas marked as hidden
+    /// (`shaders/lib/shadow.wgsl`).
+    pub has_shadows: bool,
 }
 
 /// Optical depths at the corners of cells. One or two beams have a 32-bit texel each; of more, four share a
@@ -152,6 +155,7 @@ impl Beams {
             tau: TauAtlas::new(gpu, &nowhere, 0)?,
             ambient: [0.0; 3],
             lattice: lattice.clone(),
+            has_shadows: false,
         })
     }
 
@@ -198,7 +202,8 @@ impl Beams {
             }
         }
         recorder.finish()?;
-        Ok(Self { beams, tau, ambient, lattice: lattice.clone() })
+        let has_shadows = parts.iter().any(|part| part.has_shadows);
+        Ok(Self { beams, tau, ambient, lattice: lattice.clone(), has_shadows })
     }
 
     /// Beams with texels of their own, as one texel of four of another atlas.

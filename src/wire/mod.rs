@@ -1,4 +1,4 @@
-//! What travels on wires with fields on the GPU: media, beams, residuals.
+//! What travels on wires with fields on the GPU: media, beams, residuals, surfaces.
 //!
 //! Nodes never know each other; these types are what they agree on. Light, ordinates, cameras and
 //! pictures are plain values of their own modules. All fields are in the index space of the medium's
@@ -9,8 +9,10 @@ mod beams;
 mod channels;
 mod medium;
 mod residual;
+mod surfaces;
 
 pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
 pub use channels::Channels;
 pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;
+pub use surfaces::{SurfaceNode, SurfaceTriangle, Surfaces};

@@ -7,6 +7,7 @@ use super::sources::SourceParams;
 use super::{effort, oracle, solver, sources};
 use crate::gpu::{Format, Gpu};
 use crate::graph::Value;
+use crate::nodes::oracle_scene::corners::HIDDEN;
 use crate::nodes::principal_propagation::oracle::mean_irradiance;
 use crate::nodes::spherical_propagation::oracle::mean_irradiance_point;
 use crate::nodes::testing::{
@@ -113,6 +114,42 @@ fn sources_of_point_lights_are_the_oracles() {
             assert_close(&what, &[found.x], &[*expected], relative, 1e-12);
         }
     }
+}
+
+#[test]
+fn sources_in_shadows_are_the_oracles() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { g: 0.5, ..Scene::new([9, 8, 7], Filling::Random, 3.0) };
+    let medium = scene.medium(gpu);
+    let plate = scene.plate([2.2, 1.7], [6.1, 30.0], 4.3);
+    for lights in [suns(false), vec![point(DVec3::new(4.2, 4.3, 20.0), 50.0)]] {
+        let beams = scene.propagate_behind(gpu, &medium, &lights, [0.0; 3], &[&plate]);
+        let taus = taus(gpu, beams.get());
+        assert!(taus.iter().all(|tau| tau.data.contains(&HIDDEN)), "no shadow says nothing");
+        let expected = oracle_sources(&scene, 0, beams.get(), &taus).q0.data;
+        let found: Vec<f64> = gpu_sources(gpu, &medium, &beams)[0].data.iter().map(|q| q.x).collect();
+        // As without shadows.
+        assert_close("Q0", &found, &expected, 1e-5, 1e-12 * largest(&expected));
+    }
+}
+
+#[test]
+fn a_thin_medium_scatters_what_its_lit_part_gets() {
+    // Of 14 cells along each axis those are lit that lie beyond the plane through the plate's edge along the
+    // light. Cells that it cuts get the share of their lit corners: that is off by a part of a cell in each
+    // column, and on average by none. Were they dark, 6 % of the light would be missing.
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { g: 0.0, albedo: [1.0; 3], ..Scene::new([16, 16, 16], Filling::Homogeneous, 1e-3) };
+    let direction = DVec3::new(0.37, 0.11, -1.0).normalize();
+    let (edge, z) = (2.71, 18.0);
+    let plate = scene.plate([-90.0, -90.0], [edge, 90.0], z);
+    let medium = scene.medium(gpu);
+    let beams = scene.propagate_behind(gpu, &medium, &[sun(direction, 3.0)], [0.0; 3], &[&plate]);
+    let found = gpu_sources(gpu, &medium, &beams).remove(0);
+    let n_lit = found.data.iter().map(|q| q.x).sum::<f64>() / (3.0 * 1e-3);
+    let boundary = edge + (7.5 - z) * direction.x / direction.z;
+    let expected = 14.0 * 14.0 * (14.5 - boundary);
+    assert!((n_lit / expected - 1.0).abs() < 0.01, "{n_lit} of {expected} lit cells");
 }
 
 /// Compares every channel of a residual with the oracle's, in units of the largest phi.

@@ -17,8 +17,12 @@ use rayon::prelude::*;
 use crate::optics::transmittance::mean_transmittance;
 use crate::volume::field::Field;
 
+/// Depth of a corner that a surface hides from the light.
+pub const HIDDEN: f64 = 65504.0;
+
 /// Mean of e^{−k tau} over each cell, from tau at its corners: along the axis nearest to `direction`, then
-/// along the other two. Exact where tau is linear, so that cells get what the beam loses.
+/// along the other two. Exact where tau is linear, so that cells get what the beam loses. Where corners are
+/// hidden, the mean over the corners.
 pub fn mean_over_cells(tau_corners: &Field<f64>, k: f64, direction: DVec3) -> Field<f64> {
     let axis = largest_axis(direction);
     let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
@@ -29,10 +33,14 @@ pub fn mean_over_cells(tau_corners: &Field<f64>, k: f64, direction: DVec3) -> Fi
             at[axis] += d1;
             at[second] += d2;
             at[third] += d3;
-            k * tau_corners.at(at)
+            tau_corners.at(at)
         };
+        let all = (0..8).map(|n| corner(n & 1, n >> 1 & 1, n >> 2));
+        if all.clone().any(|tau| tau == HIDDEN) {
+            return all.map(|tau| if tau == HIDDEN { 0.0 } else { (-k * tau).exp() / 8.0 }).sum();
+        }
         let face = |d3: usize| {
-            let edge = |d2: usize| depth_between(corner(0, d2, d3), corner(1, d2, d3));
+            let edge = |d2: usize| depth_between(k * corner(0, d2, d3), k * corner(1, d2, d3));
             depth_between(edge(0), edge(1))
         };
         (-depth_between(face(0), face(1))).exp()
@@ -119,6 +127,20 @@ mod tests {
         let uniform = Field::from_fn([2, 2, 9], |[_, _, z]| z as f64);
         let taken: f64 = mean_over_cells(&uniform, k, DVec3::Z).data.iter().map(|e| k * e).sum();
         assert!((taken - (1.0 - (-8.0 * k).exp())).abs() < 1e-14, "{taken}");
+    }
+
+    #[test]
+    fn a_shadow_takes_its_share_of_a_cell() {
+        // Of the four corners at x = 1 none is lit; k tau is 0.2 on the others.
+        let tau = Field::from_fn([3, 2, 2], |[x, _, _]| if x == 1 { HIDDEN } else { 0.4 });
+        for direction in [DVec3::X, DVec3::Y] {
+            for at in [[0, 0, 0], [1, 0, 0]] {
+                let mean = mean_over_cells(&tau, 0.5, direction).at(at);
+                assert!((mean - 0.5 * (-0.2_f64).exp()).abs() < 1e-15, "{mean}");
+            }
+        }
+        let dark = Field::filled([2, 2, 2], HIDDEN);
+        assert_eq!(mean_over_cells(&dark, 0.5, DVec3::X).data, [0.0]);
     }
 
     #[test]

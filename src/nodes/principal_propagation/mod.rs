@@ -1,6 +1,6 @@
 //! `principal_propagation`: parallel light through the medium (DESIGN 6.3).
 
-use super::{NodeKind, Run, no_files, walk};
+use super::{NodeKind, Run, no_files, shadow, walk};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::light::Ordinates;
 use crate::wire::{Beam, Beams, Medium, Place};
@@ -17,10 +17,11 @@ static SPEC: NodeSpec = NodeSpec {
     category: Category::Transport,
     purpose: "Carries suns and principal ordinates through the medium.",
     doc: "For every ordinate the optical depth that its light has come through, at the corners of the medium's cells. \
-          What scatters out of a beam is the residual's.",
+          What scatters out of a beam is the residual's. Behind surfaces there is no light.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what the light travels through"),
         PortSpec::new("ordinates", PortType::Ordinates, "the light"),
+        shadow::SURFACES,
     ],
     outputs: &[PortSpec::new("beams", PortType::Beams, "the light in the medium")],
     params: &[ParamSpec::choice("scheme", &["auto", "scan", "walk"]).doc(
@@ -62,10 +63,11 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     } else {
         walk::walk(run, medium, &beams)?
     };
+    let has_shadows = shadow::cast(run, medium, &beams, &tau)?;
     let bytes = tau.texture.bytes();
     Ok(vec![Value::new(
         PortType::Beams,
         bytes,
-        Beams { beams, tau, ambient: light.ambient, lattice: medium.lattice.clone() },
+        Beams { beams, tau, ambient: light.ambient, lattice: medium.lattice.clone(), has_shadows },
     )])
 }

@@ -1,6 +1,6 @@
 //! `spherical_propagation`: point lights through the medium (DESIGN 6.3, 6.7).
 
-use super::{NodeKind, Run, no_files, walk};
+use super::{NodeKind, Run, no_files, shadow, walk};
 use crate::graph::{Category, NodeError, NodeSpec, PortSpec, PortType, Value};
 use crate::light::Light;
 use crate::wire::{Beam, Beams, Medium, Place};
@@ -16,10 +16,11 @@ static SPEC: NodeSpec = NodeSpec {
     category: Category::Transport,
     purpose: "Carries point lights through the medium.",
     doc: "For every light the optical depth from it to the corners of the medium's cells, walked exactly. \
-          What scatters out of the light's rays is the residual's.",
+          What scatters out of the light's rays is the residual's. Behind surfaces there is no light.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what the light travels through"),
         PortSpec::new("lights", PortType::Light, "point lights").many(),
+        shadow::SURFACES,
     ],
     outputs: &[PortSpec::new("beams", PortType::Beams, "the light in the medium")],
     params: &[],
@@ -45,10 +46,11 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         })
         .collect::<Result<Vec<Beam>, NodeError>>()?;
     let tau = walk::walk(run, medium, &beams)?;
+    let has_shadows = shadow::cast(run, medium, &beams, &tau)?;
     let bytes = tau.texture.bytes();
     Ok(vec![Value::new(
         PortType::Beams,
         bytes,
-        Beams { beams, tau, ambient: [0.0; 3], lattice: medium.lattice.clone() },
+        Beams { beams, tau, ambient: [0.0; 3], lattice: medium.lattice.clone(), has_shadows },
     )])
 }
