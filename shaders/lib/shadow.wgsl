@@ -1,6 +1,6 @@
 // Corners of cells that a surface hides from a light: they hold a depth that no walk gives.
 
-// The largest half float; walks end at 65000.
+// The largest half float, where depths that are stored end too: either way no light is left.
 const HIDDEN: f32 = 65504.0;
 
 fn is_hidden(tau: f32) -> bool {

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::testing::{Filling, Random, Scene, assert_layout, gpu, mesh};
+use super::testing::{Filling, Random, Scene, assert_layout, ball, gpu, mesh};
 use crate::geometry::oracle::{Ray, nearest};
 use crate::gpu::{Bind, Gpu};
 use crate::mirror;
@@ -82,7 +82,7 @@ fn the_gpu_finds_what_trying_all_finds() {
         let (first, second) = triangles.split_at(n / 2);
         let meshes = [mesh(&lattice, first, [0.1, 0.2, 0.3]), mesh(&lattice, second, [0.4, 0.5, 0.6])];
         let surfaces = Surfaces::new(gpu, &lattice, &[&meshes[0], &meshes[1]]).unwrap();
-        assert_eq!((surfaces.n_triangles, surfaces.is_empty()), (n, false));
+        assert_eq!((surfaces.corners.len(), surfaces.is_empty()), (n, false));
         let rays: Vec<(Vec3, Vec3, f32)> = (0..2000)
             .map(|idx| {
                 let origin = (180.0 * point() - 60.0).as_vec3();
@@ -135,26 +135,6 @@ fn the_gpu_finds_what_trying_all_finds() {
         }
         assert!(n_hits >= 5 && n_unsure < 20, "{n}: {n_hits} hits, {n_unsure} near edges");
     }
-}
-
-/// A ball of radius 10 around `center`: an octahedron whose faces were cut in four, so many times.
-fn ball(center: DVec3, n_cuts: usize) -> Vec<[DVec3; 3]> {
-    let axes = [
-        (DVec3::X, DVec3::Y),
-        (DVec3::Y, DVec3::NEG_X),
-        (DVec3::NEG_X, DVec3::NEG_Y),
-        (DVec3::NEG_Y, DVec3::X),
-    ];
-    let faces = axes.iter().flat_map(|&(a, b)| [[a, b, DVec3::Z], [b, a, DVec3::NEG_Z]]);
-    let mut triangles: Vec<[DVec3; 3]> = faces.collect();
-    for _ in 0..n_cuts {
-        let cut = |[a, b, c]: [DVec3; 3]| {
-            let [ab, bc, ca] = [a + b, b + c, c + a].map(DVec3::normalize);
-            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
-        };
-        triangles = triangles.into_iter().flat_map(cut).collect();
-    }
-    triangles.iter().map(|t| t.map(|p| center + 10.0 * p)).collect()
 }
 
 #[test]

@@ -227,6 +227,26 @@ pub fn mesh(lattice: &Lattice, triangles: &[[DVec3; 3]], reflectance: [f64; 3]) 
     Mesh { positions: positions.collect(), triangles: corners.collect(), reflectance, n_degenerate: 0 }
 }
 
+/// A ball of radius 10 around `center`: an octahedron whose faces were cut in four, so many times.
+pub fn ball(center: DVec3, n_cuts: usize) -> Vec<[DVec3; 3]> {
+    let axes = [
+        (DVec3::X, DVec3::Y),
+        (DVec3::Y, DVec3::NEG_X),
+        (DVec3::NEG_X, DVec3::NEG_Y),
+        (DVec3::NEG_Y, DVec3::X),
+    ];
+    let faces = axes.iter().flat_map(|&(a, b)| [[a, b, DVec3::Z], [b, a, DVec3::NEG_Z]]);
+    let mut triangles: Vec<[DVec3; 3]> = faces.collect();
+    for _ in 0..n_cuts {
+        let cut = |[a, b, c]: [DVec3; 3]| {
+            let [ab, bc, ca] = [a + b, b + c, c + a].map(DVec3::normalize);
+            [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        };
+        triangles = triangles.into_iter().flat_map(cut).collect();
+    }
+    triangles.iter().map(|t| t.map(|p| center + 10.0 * p)).collect()
+}
+
 /// White parallel light along a direction of index space.
 pub fn sun(direction: DVec3, irradiance: f64) -> Beam {
     Beam { place: Place::Parallel(direction.normalize()), power: [irradiance; 3], a0: 1.0, window: None }

@@ -38,8 +38,8 @@ mirror! {
 pub struct Surfaces {
     nodes: Buffer,
     triangles: Buffer,
-    /// How many; 0 where there are no surfaces.
-    pub n_triangles: usize,
+    /// Corners of the triangles in index space, in the order in which shaders number them.
+    pub corners: Vec<[Vec3; 3]>,
 }
 
 /// A box that no ray meets: what stands where there are no surfaces.
@@ -89,22 +89,21 @@ impl Surfaces {
         };
         let nodes: Vec<SurfaceNode> = bvh.nodes.iter().map(node).collect();
         let triangles: Vec<SurfaceTriangle> = bvh.order.iter().map(triangle).collect();
-        let n_triangles = triangles.len();
         // A shader's arrays have at least one element.
-        let (nodes, triangles) = match n_triangles {
+        let (nodes, triangles) = match triangles.len() {
             0 => (vec![NOWHERE], vec![bytemuck::Zeroable::zeroed()]),
             _ => (nodes, triangles),
         };
         Ok(Self {
             nodes: gpu.buffer_from("boxes of surfaces", &nodes, REMEDY)?,
             triangles: gpu.buffer_from("triangles of surfaces", &triangles, REMEDY)?,
-            n_triangles,
+            corners: bvh.order.iter().map(|n| corners[*n as usize]).collect(),
         })
     }
 
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
-        self.n_triangles == 0
+        self.corners.is_empty()
     }
 
     /// For a stage: `surface_nodes`, then `surface_triangles`.

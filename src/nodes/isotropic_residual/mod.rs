@@ -10,10 +10,12 @@
 //! oracle beside it, the slabs of adding–doubling, and the invariants of DESIGN 8.
 
 use super::{NodeKind, Run, beams_through, no_files};
+use crate::geometry::Mesh;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::optics::directions::LineSet;
-use crate::wire::{Channels, Medium};
+use crate::wire::{Channels, Medium, Surfaces};
 
+mod bounce;
 mod level;
 #[cfg(test)]
 pub(super) mod oracle;
@@ -29,10 +31,12 @@ static SPEC: NodeSpec = NodeSpec {
     category: Category::Transport,
     purpose: "Multiple scattering: light that has lost its direction, as one lobe a cell.",
     doc: "Solves for all light that has been scattered out of the beams, by sweeps along lines of the grid from coarse to fine. \
-          One channel where the medium is grey and all light has one color, three otherwise.",
+          One channel where the medium is grey and all light has one color, three otherwise. Surfaces are lit by beams, by the \
+          medium and by each other, and send light back, twice; they do not block the lines of the sweeps.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "where the light scatters"),
         PortSpec::new("beams", PortType::Beams, "the light that enters; without it, nothing scatters").many().optional(),
+        PortSpec::new("surfaces", PortType::Surface, "what sends light back into the medium").many().optional(),
     ],
     outputs: &[PortSpec::new("residual", PortType::Residual, "the scattered light, for raymarch")],
     params: &[
@@ -108,10 +112,20 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
     let effort = effort(run)?;
     let beams = beams_through(run, medium)?;
-    let channels = Channels::of(medium, &beams);
+    let meshes = run.inputs.many::<Mesh>("surfaces");
+    let is_grey = |mesh: &&Mesh| mesh.reflectance.iter().all(|share| *share == mesh.reflectance[0]);
+    let channels = match Channels::of(medium, &beams) {
+        channels if meshes.iter().all(is_grey) => channels,
+        _ => Channels::RGB,
+    };
     let problem = level::Problem::new(medium, &channels, beams.ambient, effort.lines);
-    let sources = sources::sources(run, medium, &beams, &channels, &problem)?;
-    let residual = solver::solve(run, medium, sources, &problem, effort, channels, level::BATCH_BYTES)?;
+    let surfaces = Surfaces::new(run.gpu, &medium.lattice, &meshes)?;
+    let residual = if surfaces.is_empty() {
+        let sources = sources::sources(run, medium, &beams, &channels, &problem)?;
+        solver::solve(run, medium, &sources, &problem, effort, channels, level::BATCH_BYTES)?
+    } else {
+        bounce::solve(run, medium, &beams, &surfaces, &problem, effort, channels)?
+    };
     let bytes = residual.moments.bytes();
     Ok(vec![Value::new(PortType::Residual, bytes, residual)])
 }

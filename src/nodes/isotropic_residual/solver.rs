@@ -32,7 +32,7 @@ const MAX_ROUNDS: usize = 2000;
 pub(super) fn solve(
     run: &Run,
     medium: &Medium,
-    sources: Sources,
+    sources: &Sources,
     problem: &Problem,
     effort: Effort,
     channels: Channels,
@@ -63,7 +63,7 @@ pub(super) fn solve(
 fn levels(
     run: &Run,
     medium: &Medium,
-    sources: Sources,
+    sources: &Sources,
     problem: &Problem,
     scratch: &Scratch,
 ) -> Result<Vec<Level>, NodeError> {

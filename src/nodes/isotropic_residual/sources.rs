@@ -2,7 +2,7 @@
 
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
-use crate::gpu::{Bind, Buffer, Format, Texture};
+use crate::gpu::{Bind, Buffer, Format, Gpu, GpuError, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
 use crate::wire::{Beams, Channels, Medium};
@@ -37,11 +37,7 @@ pub(super) fn sources(
     let level = problem.level(dims, medium.lattice.cell_m);
     let layers = problem.layers(dims);
     let field = gpu.texture3("sources", layers, Format::Rgba32Float, REMEDY)?;
-    let columns = [dims[0], dims[1], problem.n_channels];
-    let sums = gpu.buffer("powers of sources", 4 * columns.iter().product::<usize>() as u64, REMEDY)?;
-    let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
-    let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
-    let list = gpu.buffer_from("beams", &texels, "lower light_decomposition.count")?;
+    let list = beam_list(gpu, beams, channels)?;
     let params = SourceParams {
         level,
         n_beams: beams.beams.len() as u32,
@@ -53,8 +49,30 @@ pub(super) fn sources(
     let inputs = [Bind::Texture(&medium.sigma_t), Bind::Texture(&beams.tau.texture), Bind::Buffer(&list)];
     let stage = gpu.stage("isotropic_residual/sources", &beams.tau.choices())?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
+    run.finish(recorder)?;
+    with_sums(run, problem, &level, field)
+}
+
+/// Beams with the power of the channels that are solved; one without power where there are none.
+pub(super) fn beam_list(gpu: &Gpu, beams: &Beams, channels: &Channels) -> Result<Buffer, GpuError> {
+    let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
+    let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
+    gpu.buffer_from("beams", &texels, "lower light_decomposition.count")
+}
+
+/// A field of sources with its powers.
+pub(super) fn with_sums(
+    run: &Run,
+    problem: &Problem,
+    level: &LevelParams,
+    field: Texture,
+) -> Result<Sources, NodeError> {
+    let gpu = run.gpu;
+    let columns = [level.dims[0] as usize, level.dims[1] as usize, problem.n_channels];
+    let sums = gpu.buffer("powers of sources", 4 * columns.iter().product::<usize>() as u64, REMEDY)?;
     let stage = gpu.stage("isotropic_residual/source_sum", &[])?;
-    recorder.dispatch(&stage.bind(gpu, &level, &[Bind::Texture(&field)], &[Bind::Buffer(&sums)]), columns);
+    let mut recorder = gpu.recorder("sources");
+    recorder.dispatch(&stage.bind(gpu, level, &[Bind::Texture(&field)], &[Bind::Buffer(&sums)]), columns);
     run.finish(recorder)?;
     Ok(Sources { field, sums })
 }

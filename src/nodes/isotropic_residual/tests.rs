@@ -268,7 +268,7 @@ fn flame_without_smoke_shines() {
         let power = (q0.data.iter().sum::<f64>() * volume) as f32;
         let sums = gpu.buffer_from("powers of sources", &[power, 0.0, 0.0, 0.0], "").unwrap();
         let (sources, effort) = (sources::Sources { field, sums }, effort(run).unwrap());
-        solver::solve(run, medium, sources, &problem, effort, channels, 1 << 30).unwrap()
+        solver::solve(run, medium, &sources, &problem, effort, channels, 1 << 30).unwrap()
     });
     let sources = oracle::Sources { q0, ..oracle::Sources::new(dims, 0.0) };
     let solved = solve(Level::new(&scene.oracle(0), sources), Quality::Default.options());
@@ -322,7 +322,7 @@ fn several_batches_give_what_one_gives() {
             let channels = Channels::of(medium, beams);
             let problem = Problem::new(medium, &channels, beams.ambient, LineSet::Lines14);
             let sources = sources::sources(run, medium, beams, &channels, &problem).unwrap();
-            solver::solve(run, medium, sources, &problem, effort(run).unwrap(), channels, batch_bytes)
+            solver::solve(run, medium, &sources, &problem, effort(run).unwrap(), channels, batch_bytes)
         });
         let moments = result.unwrap().moments;
         layers(gpu, &moments, 3).iter().flat_map(flat).collect::<Vec<f64>>()

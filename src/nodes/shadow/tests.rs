@@ -17,6 +17,8 @@ fn suns(gpu: &Gpu, scene: &Scene, scheme: &str, directions: &[DVec3], surfaces: 
         direction: world_from_index.transform_vector3(*direction).normalize(),
         irradiance: [3.0; 3],
         a0: 1.0,
+        region: None,
+        window: None,
     };
     let ordinates = Ordinates { ordinates: directions.iter().map(ordinate).collect(), ambient: [0.0; 3] };
     let (medium, ordinates) = (scene.medium(gpu), Value::new(PortType::Ordinates, 0, ordinates));

@@ -1,0 +1,123 @@
+// A thread: the radiance that one side of a patch sends back: reflectance / pi times what arrives, from beams
+// through the medium and past surfaces, and from 64 directions: the medium's own light, surfaces, ambient light.
+
+#import "isotropic_residual/bounce.wgsl"
+#import "lib/beam.wgsl"
+#import "lib/lobe.wgsl"
+#import "lib/patches.wgsl"
+#import "lib/transmittance.wgsl"
+
+struct Patch {
+    // Its middle, in index space.
+    point: vec3f,
+    triangle: u32,
+}
+
+@group(0) @binding(0) var<uniform> params: BounceParams;
+@group(1) @binding(0) var sigma_t: texture_3d<f32>;
+@group(1) @binding(1) var linear_clamp: sampler;
+@group(1) @binding(2) var sources: texture_3d<f32>;
+@group(1) @binding(3) var moments: texture_3d<f32>;
+@group(1) @binding(4) var<storage, read> surface_nodes: array<SurfaceNode>;
+@group(1) @binding(5) var<storage, read> surface_triangles: array<SurfaceTriangle>;
+@group(1) @binding(6) var<storage, read> patches: array<Patch>;
+@group(1) @binding(7) var<storage, read> patch_grids: array<vec2u>;
+@group(1) @binding(8) var<storage, read> patch_radiances: array<vec4f>;
+@group(1) @binding(9) var<storage, read> beams: array<Beam>;
+@group(2) @binding(0) var<storage, read_write> reflected: array<vec4f>;
+
+const N_DIRECTIONS: u32 = 64u;
+const FAR: f32 = 1e30;
+
+// Irradiance of one beam on a side, per channel.
+fn from_beam(beam: Beam, p: vec3f, normal: vec3f) -> vec3f {
+    var to_light = -beam.place.xyz;
+    var reach = FAR;
+    var falloff = 1.0;
+    if beam.place.w > 0.0 {
+        let line = beam.place.xyz - p;
+        reach = max(length(line), SURFACE_GAP);
+        to_light = line / reach;
+        falloff = 1.0 / (reach * reach * params.level.cell_m * params.level.cell_m);
+    }
+    let cosine = dot(normal, to_light);
+    if cosine <= 0.0 || is_occluded(p, to_light, reach) {
+        return vec3f(0.0);
+    }
+    let tau = walk(sigma_t, linear_clamp, params.shape, params.level.cell_m, p, to_light, reach);
+    var k = vec3f(0.0);
+    for (var c = 0u; c < params.level.n_channels; c += 1u) {
+        k[c] = params.level.channels[c].k;
+    }
+    return cosine * falloff * beam.power.xyz * exp(-k * tau);
+}
+
+// Radiance that arrives from `direction`, per channel.
+fn arriving(p: vec3f, direction: vec3f) -> vec3f {
+    let level = params.level;
+    let hit = nearest_surface(p, direction, FAR);
+    let span = ray_box(p, direction, vec3f(0.0), vec3f(level.dims) - 1.0);
+    let from_t = span.x;
+    let way = max(0.0, min(span.y, hit.t) - from_t);
+    let n_steps = ceil(way);
+    let dt = way / max(n_steps, 1.0);
+    var behind = vec3f(0.0);
+    if hit.triangle != NO_SURFACE {
+        behind = patch_radiance(hit.triangle, p + hit.t * direction, direction);
+    }
+    var radiance = vec3f(0.0);
+    for (var c = 0u; c < level.n_channels; c += 1u) {
+        let channel = level.channels[c];
+        var through = 1.0;
+        for (var n = 0.0; n < n_steps; n += 1.0) {
+            let at = p + (from_t + (n + 0.5) * dt) * direction;
+            let extinction = extinction(sigma_t, linear_clamp, at);
+            if extinction > 0.0 {
+                let state = layered(moments, linear_clamp, level.n_channels, c, at);
+                let given = layered(sources, linear_clamp, level.n_channels, c, at);
+                let total = extinction * channel.scatter * state * vec4f(1.0, vec3f(level.g_star)) + given;
+                let lobe = lobe_from_moments(total.x, total.yzw);
+                let shape = 1.0 - dot(lobe.yzw, direction);
+                let length_m = dt * level.cell_m;
+                let depth = channel.k * extinction * length_m;
+                radiance[c] += through * mean_transmittance(depth) * length_m * lobe.x * shape * shape;
+                through *= exp(-depth);
+            }
+        }
+        let beyond = select(channel.inflow, behind[c], hit.triangle != NO_SURFACE);
+        radiance[c] += through * beyond;
+    }
+    return radiance;
+}
+
+@compute @workgroup_size(64, 1, 1)
+fn isotropic_residual_patch_light(@builtin(global_invocation_id) id: vec3u) {
+    // Beyond 65,535 groups along x, threads stand along y.
+    let idx = id.x + 4194240u * id.y;
+    if idx >= 2u * params.n_patches {
+        return;
+    }
+    let lit = patches[idx / 2u];
+    let corners = surface_triangles[lit.triangle];
+    let ab = corners.b.xyz - corners.a.xyz;
+    let ac = corners.c.xyz - corners.a.xyz;
+    let front = normalize(cross(ab / length(ab), ac / length(ac)));
+    let normal = select(front, -front, idx % 2u == 1u);
+    var irradiance = vec3f(0.0);
+    for (var n = 0u; n < params.n_beams; n += 1u) {
+        irradiance += from_beam(beams[n], lit.point, normal);
+    }
+    let across = normalize(select(vec3f(0.0, -normal.z, normal.y), vec3f(-normal.y, normal.x, 0.0), abs(normal.z) < 0.7));
+    let along = cross(normal, across);
+    var sum = vec3f(0.0);
+    for (var n = 0u; n < N_DIRECTIONS; n += 1u) {
+        // By the cosine: evenly over the disk below the hemisphere, the golden angle apart.
+        let share = (f32(n) + 0.5) / f32(N_DIRECTIONS);
+        let angle = 2.39996323 * f32(n);
+        let flat_part = sqrt(share) * vec2f(cos(angle), sin(angle));
+        sum += arriving(lit.point, flat_part.x * across + flat_part.y * along + sqrt(1.0 - share) * normal);
+    }
+    irradiance += sum * (PI / f32(N_DIRECTIONS));
+    // One channel is grey, whatever component is taken.
+    reflected[idx] = vec4f(surface_reflectance(lit.triangle) / PI * irradiance, 0.0);
+}

@@ -1,0 +1,44 @@
+// A thread: phi and F [W/m2] in one cell of what comes straight from surfaces, from 32 directions, all channels.
+
+#import "isotropic_residual/bounce.wgsl"
+#import "lib/patches.wgsl"
+
+@group(0) @binding(0) var<uniform> params: BounceParams;
+@group(1) @binding(0) var sigma_t: texture_3d<f32>;
+@group(1) @binding(1) var linear_clamp: sampler;
+@group(1) @binding(2) var<storage, read> surface_nodes: array<SurfaceNode>;
+@group(1) @binding(3) var<storage, read> surface_triangles: array<SurfaceTriangle>;
+@group(1) @binding(4) var<storage, read> patch_grids: array<vec2u>;
+@group(1) @binding(5) var<storage, read> patch_radiances: array<vec4f>;
+@group(2) @binding(0) var uncollided: texture_storage_3d<rgba32float, write>;
+
+const N_DIRECTIONS: u32 = 32u;
+const WEIGHT: f32 = 0.39269908169872; // 4 pi / 32
+
+@compute @workgroup_size(8, 8, 1)
+fn isotropic_residual_uncollided(@builtin(global_invocation_id) id: vec3u) {
+    let level = params.level;
+    let layer = level.dims / params.coarser;
+    if any(id >= layer) {
+        return;
+    }
+    let p = (vec3f(id) + 0.5) * f32(params.coarser) - 0.5;
+    var sums: array<vec4f, 3>;
+    for (var n = 0u; n < N_DIRECTIONS; n += 1u) {
+        // Evenly along z, the golden angle apart.
+        let z = 1.0 - (2.0 * f32(n) + 1.0) / f32(N_DIRECTIONS);
+        let angle = 2.39996323 * f32(n);
+        let towards = vec3f(sqrt(1.0 - z * z) * vec2f(cos(angle), sin(angle)), z);
+        let hit = nearest_surface(p, towards, 1e30);
+        if hit.triangle != NO_SURFACE {
+            let radiance = patch_radiance(hit.triangle, p + hit.t * towards, towards);
+            let tau = walk(sigma_t, linear_clamp, params.shape, level.cell_m, p, towards, hit.t);
+            for (var c = 0u; c < level.n_channels; c += 1u) {
+                sums[c] += WEIGHT * radiance[c] * exp(-level.channels[c].k * tau) * vec4f(1.0, -towards);
+            }
+        }
+    }
+    for (var c = 0u; c < level.n_channels; c += 1u) {
+        textureStore(uncollided, id + vec3u(0u, 0u, c * layer.z), sums[c]);
+    }
+}
