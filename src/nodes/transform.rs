@@ -9,7 +9,9 @@ pub(super) const PARAM: ParamSpec = ParamSpec::vector(
     "transform",
     &[1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0],
 )
-.doc("Moves, turns and scales it: 16 numbers, row-major, applied to column vectors, after the file's own map.");
+.doc(
+    "Moves, turns and scales it: 16 numbers, row-major, applied to column vectors, after the file's own map.",
+);
 
 /// The matrix.
 ///
