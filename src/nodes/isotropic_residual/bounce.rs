@@ -17,7 +17,7 @@ use glam::Vec3;
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
 use super::sources::{Sources, beam_list, with_sums};
-use super::{Effort, level, solver};
+use super::{Effort, Kind, level, solver};
 use crate::gpu::{Bind, Buffer, Format};
 use crate::graph::NodeError;
 use crate::mirror;
@@ -75,10 +75,15 @@ pub(super) fn solve(
     let dims = medium.lattice.dims;
     let patches = patches(run, surfaces)?;
     let of_beams = super::sources::sources(run, medium, beams, &channels, problem)?;
-    let settle = |sources: &Sources| {
+    let settle = |sources: &Sources, effort: Effort| {
         solver::solve(run, medium, sources, problem, effort, channels, level::BATCH_BYTES)
     };
-    let mut residual = settle(&of_beams)?;
+    // What only lights patches need not be as good as what is seen.
+    let rough = match effort.kind {
+        Kind::Cascade => Effort { sweeps: 1, coarse_sweeps: effort.coarse_sweeps.min(8), ..effort },
+        _ => effort,
+    };
+    let mut residual = settle(&of_beams, rough)?;
     let coarser = coarser(dims);
     let params = BounceParams {
         level: problem.level(dims, medium.lattice.cell_m),
@@ -98,7 +103,7 @@ pub(super) fn solve(
         gpu.texture3("light straight from surfaces", problem.layers(lit_dims), Format::Rgba32Float, REMEDY)?;
     let mut radiances = side_radiances(run, &patches)?;
     let mut sources: Option<Sources> = None;
-    for _ in 0..BOUNCES {
+    for bounce in 0..BOUNCES {
         let reflected = side_radiances(run, &patches)?;
         let inputs = [
             sigma_t,
@@ -133,7 +138,7 @@ pub(super) fn solve(
         recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
         run.finish(recorder)?;
         let lit = with_sums(run, problem, &params.level, field)?;
-        residual = settle(&lit)?;
+        residual = settle(&lit, if bounce + 1 < BOUNCES { rough } else { effort })?;
         sources = Some(lit);
     }
     let moments = gpu.texture3("moments", layers, Format::Rgba32Float, REMEDY)?;
