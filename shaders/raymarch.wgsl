@@ -11,8 +11,16 @@
 #import "lib/lobe.wgsl"
 #import "lib/transmittance.wgsl"
 #import "raymarch/channels_{channels}.wgsl"
+#import "lib/bvh.wgsl"
+#import "lib/shadow.wgsl"
 #import "raymarch/beams.wgsl"
+#import "raymarch/environment.wgsl"
+#import "raymarch/surface.wgsl"
+#import "lib/bvh.wgsl"
+#import "lib/shadow.wgsl"
 #import "raymarch/beams.wgsl"
+#import "raymarch/environment.wgsl"
+#import "raymarch/surface.wgsl"
 
 struct MarchParams {
     shape: Shape,
@@ -56,6 +64,8 @@ struct MarchParams {
     pad_0: u32,
     pad_1: u32,
     pad_2: u32,
+    // Numbers of forward scatterings that the levels of the stack are for.
+    stack_x: array<vec4f, 4>,
 }
 
 struct Pixel {
@@ -65,6 +75,7 @@ struct Pixel {
     single: vec4f,
     forward: vec4f,
     residual: vec4f,
+    surface: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> params: MarchParams;
@@ -77,10 +88,16 @@ struct Pixel {
 @group(1) @binding(6) var environment: texture_2d<f32>;
 @group(1) @binding(7) var linear_around: sampler;
 @group(1) @binding(8) var blocks: texture_3d<f32>;
+@group(1) @binding(9) var stack: texture_3d<f32>;
+@group(1) @binding(10) var<storage, read> surface_nodes: array<SurfaceNode>;
+@group(1) @binding(11) var<storage, read> surface_triangles: array<SurfaceTriangle>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Where less than this is left of a ray it ends.
 const OPAQUE: f32 = 1e-5;
+// No surface within reach [cells].
+const FAR: f32 = 1e30;
+const STACK_LEVELS: u32 = 16u;
 // Optical depth of two steps that counts as none: its square, and its product with OPAQUE, are numbers still.
 const VOID: f32 = 1e-18;
 
@@ -89,7 +106,11 @@ const VOID: f32 = 1e-18;
 const HAS_VOXELS: bool = {voxels};
 const HAS_POINTS: bool = {points};
 const HAS_PEAK: bool = {peak};
+const HAS_WINDOW: bool = {window};
 const HAS_RESIDUAL: bool = {residual};
+const HAS_STACK: bool = {stack};
+const HAS_SURFACES: bool = {surfaces};
+const HAS_SHADOWS: bool = {shadows};
 
 // A number where it is known when the shader is compiled: what is the same along the ray is then computed once.
 fn n_beams() -> u32 {
@@ -106,14 +127,6 @@ struct Layers {
     distance: f32,
 }
 
-// The environment's map towards a direction of the world.
-fn environment_radiance(direction: vec3f) -> vec3f {
-    let longitude = atan2(direction.x, direction.z) - params.rotate_y;
-    let u = 0.5 - longitude / (2.0 * PI);
-    let v = acos(clamp(direction.y, -1.0, 1.0)) / PI;
-    return textureSampleLevel(environment, linear_around, vec2f(u, v), 0.0).xyz;
-}
-
 // The residual lobe's radiance per unit of sigma_s*, towards the camera.
 fn residual_radiance(p: vec3f, view: vec3f, c: u32) -> f32 {
     let size = vec3f(textureDimensions(moments));
@@ -126,9 +139,11 @@ fn residual_radiance(p: vec3f, view: vec3f, c: u32) -> f32 {
     return lobe.x * shape * shape;
 }
 
-fn march(direction: vec3f) -> Layers {
+// A ray from the eye, no further than `until` cells.
+fn march(direction: vec3f, until: f32) -> Layers {
     var layers: Layers;
-    let span = ray_shape(params.shape, params.eye, direction);
+    var span = ray_shape(params.shape, params.eye, direction);
+    span.y = min(span.y, until);
     if span.x >= span.y {
         return layers;
     }
@@ -200,27 +215,45 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
         let offset = (vec2f(vec2u(sub % n, sub / n)) + 0.5) / f32(n);
         let at = (vec2f(vec2u(id.x, params.row + id.y)) + offset) / vec2f(f32(params.width), f32(params.height));
         let direction = normalize(params.forward + (2.0 * at.x - 1.0) * params.right + (1.0 - 2.0 * at.y) * params.up);
-        let layers = march(direction);
+        var surface = SurfaceHit(FAR, NO_SURFACE);
+        if HAS_SURFACES {
+            surface = nearest_surface(params.eye, direction, FAR);
+        }
+        let layers = march(direction, surface.t);
         let sharp = exp(-layers.tau);
         let through = exp(-spectrum(params.k) * layers.tau);
-        let lit = layers.single + layers.forward + layers.residual + (through - sharp) * spectrum(params.ambient);
-        var behind = vec3f(0.0);
-        if params.backdrop == 1u {
-            behind = params.background.xyz;
-        } else if params.backdrop == 2u {
-            behind = params.background.xyz * environment_radiance(params.world_from_index * direction);
-        }
         let color = params.color.xyz;
-        pixel.beauty += vec4f(color * rgb(lit) + sharp * behind, 1.0 - sharp);
-        pixel.single += vec4f(color * rgb(layers.single), layers.distance * params.cell_m);
-        pixel.forward += vec4f(color * rgb(layers.forward + (through - sharp) * spectrum(params.ambient)), 0.0);
-        pixel.residual += vec4f(color * rgb(layers.residual), 0.0);
+        var behind = sharp;
+        var distance = layers.distance;
+        if surface.triangle == NO_SURFACE {
+            let turned = params.world_from_index * direction;
+            var forward = color * rgb(layers.forward + (through - sharp) * spectrum(params.ambient));
+            if HAS_STACK {
+                forward += environment_forward(turned, layers.tau);
+            }
+            pixel.forward += vec4f(forward, 0.0);
+            pixel.beauty += vec4f(forward + sharp * environment_radiance(turned), 0.0);
+        } else {
+            let reflected = rgb(through) * surface_radiance(surface.triangle, params.eye + surface.t * direction, direction);
+            let forward = color * rgb(layers.forward);
+            pixel.surface += vec4f(reflected, 0.0);
+            pixel.forward += vec4f(forward, 0.0);
+            pixel.beauty += vec4f(forward + reflected, 0.0);
+            distance += sharp * surface.t;
+            behind = 0.0;
+        }
+        let single = color * rgb(layers.single);
+        let residual = color * rgb(layers.residual);
+        pixel.beauty += vec4f(single + residual, 1.0 - behind);
+        pixel.single += vec4f(single, distance * params.cell_m);
+        pixel.residual += vec4f(residual, 0.0);
     }
     let share = 1.0 / f32(n * n);
     pixel.beauty *= share;
     pixel.single *= share;
     pixel.forward *= share;
     pixel.residual *= share;
+    pixel.surface *= share;
     // Mean distance of what is seen; 0 where nothing is.
     pixel.single.w = select(0.0, pixel.single.w / max(pixel.beauty.w, 1e-30), pixel.beauty.w > 1e-6);
     pixels[id.y * params.width + id.x] = pixel;

@@ -4,31 +4,52 @@
 
 use tyndall::gpu::{Shader, shader_names, shader_text};
 
+/// A part of a shader that is there or not.
+const SWITCH: &[&str] = &["true", "false"];
+
 /// The values that stages fill in for a name in braces.
 const CHOICES: &[(&str, &[&str])] = &[
     ("channels", &["1", "3"]),
     ("format", &["r32float", "rgba16float", "rgba32float"]),
     ("pack", &["1", "4"]),
     ("n_beams", &["0u", "2u", "params.n_beams"]),
-    ("voxels", &["true", "false"]),
-    ("points", &["true", "false"]),
-    ("peak", &["true", "false"]),
-    ("residual", &["true", "false"]),
+    ("voxels", SWITCH),
+    ("points", SWITCH),
+    ("peak", SWITCH),
+    ("residual", SWITCH),
+    ("window", SWITCH),
+    ("stack", SWITCH),
+    ("surfaces", SWITCH),
+    ("shadows", SWITCH),
 ];
 
-/// All ways to fill in the names that the text asks for.
+/// Ways to fill in the names that the text asks for: all products of those with many values; of those that are
+/// true or false, all true, all false, and each one false alone.
 fn ways(text: &str) -> Vec<Vec<(&'static str, String)>> {
+    let asked = |(name, _): &&(&'static str, &[&str])| text.contains(&format!("{{{name}}}"));
+    let (switches, many): (Vec<_>, Vec<_>) =
+        CHOICES.iter().filter(asked).partition(|(_, values)| *values == SWITCH);
     let mut ways = vec![Vec::new()];
-    for (name, values) in CHOICES.iter().filter(|(name, _)| text.contains(&format!("{{{name}}}"))) {
+    for &(name, values) in many {
         let with = |way: &Vec<(&'static str, String)>, value: &&str| {
-            way.iter().cloned().chain([(*name, (*value).to_owned())]).collect()
+            way.iter().cloned().chain([(name, (*value).to_owned())]).collect()
         };
         ways = ways
             .iter()
             .flat_map(|way| values.iter().map(|value| with(way, value)).collect::<Vec<_>>())
             .collect();
     }
-    ways
+    let on = |is_on: &dyn Fn(usize) -> bool| -> Vec<(&'static str, String)> {
+        switches.iter().enumerate().map(|(idx, (name, _))| (*name, is_on(idx).to_string())).collect()
+    };
+    let mut settings = vec![on(&|_| true)];
+    if !switches.is_empty() {
+        settings.push(on(&|_| false));
+        settings.extend((0..switches.len()).map(|off| on(&|idx| idx != off)));
+    }
+    ways.iter()
+        .flat_map(|way| settings.iter().map(|set| [way.clone(), set.clone()].concat()).collect::<Vec<_>>())
+        .collect()
 }
 
 /// The text of a shader and of all that it imports.
@@ -67,6 +88,7 @@ fn choices_multiply() {
     assert_eq!(ways("none").len(), 1);
     assert_eq!(ways("spectrum_{channels}.wgsl").len(), 2);
     assert_eq!(ways("{channels} {format}").len(), 6);
+    assert_eq!(ways("{channels} {peak} {points}").len(), 2 * 4);
 }
 
 #[test]

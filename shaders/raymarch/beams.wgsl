@@ -30,6 +30,12 @@ fn forward_peak(x: f32, column: f32) -> f32 {
     return textureSampleLevel(peak, linear_clamp, (vec2f(column, row) + 0.5) / PEAK_SIZE, 0.0).x;
 }
 
+// What of the phase function is as even as the residual's sources: it stays with the ordinates.
+fn even_phase(mu: f32) -> f32 {
+    let f = params.g * params.g;
+    return max(0.0, (1.0 - f) + 3.0 * (params.g - f) * mu) / FOUR_PI;
+}
+
 // The light of a segment whose point is p, towards the eye of a ray with this direction.
 fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
     let k = spectrum(params.k);
@@ -42,7 +48,15 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
     var scattered: Scattered;
     for (var first = 0u; first < n_beams(); first += PACK) {
         let origin = vec3f(pack_origin(first / PACK, corners, params.packs_per_column));
-        let depths = textureSampleLevel(tau, linear_clamp, (origin + inside) / tau_size, 0.0);
+        var depths = vec4f(0.0);
+        var share = vec4f(1.0);
+        if HAS_SHADOWS {
+            let lit = lit_between(tau, vec3u(origin), corners, p + 0.5);
+            depths = lit.tau;
+            share = lit.share;
+        } else {
+            depths = textureSampleLevel(tau, linear_clamp, (origin + inside) / tau_size, 0.0);
+        }
         for (var m = 0u; m < min(PACK, n_beams() - first); m += 1u) {
             let beam = beams[first + m];
             var travel = beam.place.xyz;
@@ -63,13 +77,23 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
                 tau_n = params.shape.sigma_t * max(0.0, min(way.y, reach) - way.x) * params.cell_m;
             }
             let mu = clamp(-dot(travel, direction), -1.0, 1.0);
+            power *= share[m];
             let unscattered = segment.sharp * exp(-tau_n);
-            scattered.single += power * unscattered * henyey_greenstein(mu, params.g * beam.power.w);
+            var phase = henyey_greenstein(mu, params.g * beam.power.w);
             if HAS_PEAK {
                 let column = (PEAK_SIZE.x - 1.0) * sqrt(sqrt(0.5 - 0.5 * mu));
                 let deflected = max(segment.reach * exp(-k * tau_n) - unscattered, Spectrum(0.0));
-                scattered.forward += power * deflected * peak_of(albedo * (tau_n + segment.tau_c), column);
+                var peak_phase = peak_of(albedo * (tau_n + segment.tau_c), column);
+                if HAS_WINDOW {
+                    let part = saturate((mu - beam.window.y) / max(beam.window.x - beam.window.y, 1e-6));
+                    let kept = 1.0 - part * part * (3.0 - 2.0 * part);
+                    let even = even_phase(mu);
+                    phase = even + kept * (phase - even);
+                    peak_phase = even + kept * (peak_phase - even);
+                }
+                scattered.forward += power * deflected * peak_phase;
             }
+            scattered.single += power * unscattered * phase;
         }
     }
     scattered.single *= albedo;

@@ -6,17 +6,20 @@
 
 use glam::DMat3;
 
+use self::backdrop::Backdrop;
 use super::{ELSEWHERE, NodeKind, Run, beams_through, no_files};
 use crate::camera::Camera;
+use crate::geometry::Mesh;
 use crate::gpu::{Bind, Format, Gpu, GpuError, Texture};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::image::Image;
-use crate::light::environment::Environment;
+use crate::light::environment::STACK_X;
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::peak;
-use crate::wire::{Beams, Channels, Medium, Place, Residual, ShapeTexel};
+use crate::wire::{Beams, Channels, Medium, Place, Residual, ShapeTexel, Surfaces};
 
+mod backdrop;
 mod layers;
 #[cfg(test)]
 pub(super) mod oracle;
@@ -29,7 +32,8 @@ static SPEC: NodeSpec = NodeSpec {
     category: Category::Image,
     purpose: "Marches the camera's rays through the medium: the picture.",
     doc: "Layers: beauty, alpha (coverage), depth (mean distance of what is seen [m], 0 where nothing is), single (light scattered \
-          once), forward (light of the forward peak), residual (light scattered into all directions).",
+          once), forward (light of the forward peak), residual (light scattered into all directions), \
+          surface (light of meshes).",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what is seen"),
         PortSpec::new(
@@ -48,6 +52,9 @@ static SPEC: NodeSpec = NodeSpec {
             "what stands behind the medium; without it, black",
         )
         .optional(),
+        PortSpec::new("surfaces", PortType::Surface, "meshes that are seen, lit by the beams")
+            .many()
+            .optional(),
     ],
     outputs: &[PortSpec::new("image", PortType::Image, "radiance [W/(m2 sr)], linear Rec. 709, with layers")],
     params: &[
@@ -96,11 +103,12 @@ mirror! {
         pad_0: u32,
         pad_1: u32,
         pad_2: u32,
+        stack_x: [[f32; 4]; 4],
     }
 }
 
-/// Bytes of pixels that are computed at once; also how often a cancel is heard.
-const BAND_BYTES: usize = 32 << 20;
+/// Rays that are marched at once, about: a cancel is heard between them.
+const BAND_RAYS: usize = 1 << 18;
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let gpu = run.gpu;
@@ -111,6 +119,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     if residual.is_some_and(|residual| residual.lattice != medium.lattice) {
         return Err(NodeError::new(ELSEWHERE));
     }
+    let surfaces = Surfaces::new(gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
+    let [nodes, triangles] = surfaces.binds();
     let backdrop = Backdrop::new(gpu, run.inputs.maybe("environment"), run.params.bool("background"))?;
 
     let channels = common_channels(Channels::of(medium, &beams), residual);
@@ -132,11 +142,15 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&backdrop.map),
         Bind::Sampler(&around),
         Bind::Texture(&medium.blocks),
+        Bind::Texture(&backdrop.stack),
+        nodes,
+        triangles,
     ];
 
-    let stage = gpu.stage("raymarch", &choices(medium, &beams, residual, channels))?;
+    let stage = gpu.stage("raymarch", &choices(medium, &beams, residual, &backdrop, &surfaces, channels))?;
     let row_bytes = size_of::<layers::Pixel>() * camera.width;
-    let band = (BAND_BYTES / row_bytes).clamp(1, camera.height);
+    let row_rays = camera.width * (params.n_sub * params.n_sub) as usize;
+    let band = (BAND_RAYS / row_rays).clamp(1, camera.height);
     let pixels = gpu.buffer("a band of pixels", (row_bytes * band) as u64, "lower camera.width")?;
     let mut all = Vec::with_capacity(camera.width * camera.height);
     for row in (0..camera.height).step_by(band) {
@@ -167,9 +181,12 @@ fn choices(
     medium: &Medium,
     beams: &Beams,
     residual: Option<&Residual>,
+    backdrop: &Backdrop,
+    surfaces: &Surfaces,
     channels: Channels,
-) -> [(&'static str, String); 7] {
+) -> [(&'static str, String); 11] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
+    let window = beams.beams.iter().any(|beam| beam.window.is_some());
     let [pack, _] = beams.tau.choices();
     let n_beams = match beams.beams.len() {
         n @ ..=4 => format!("{n}u"),
@@ -180,7 +197,11 @@ fn choices(
         ("voxels", medium.homogeneous.is_none().to_string()),
         ("points", points.to_string()),
         ("peak", (medium.g > 0.0).to_string()),
+        ("window", window.to_string()),
         ("residual", residual.is_some().to_string()),
+        ("stack", backdrop.has_stack.to_string()),
+        ("surfaces", (!surfaces.is_empty()).to_string()),
+        ("shadows", beams.has_shadows.to_string()),
         ("n_beams", n_beams),
         pack,
     ]
@@ -249,6 +270,7 @@ fn params(
         pad_0: 0,
         pad_1: 0,
         pad_2: 0,
+        stack_x: std::array::from_fn(|row| std::array::from_fn(|n| STACK_X[4 * row + n] as f32)),
     })
 }
 
@@ -259,35 +281,6 @@ fn peak_texture(gpu: &Gpu, g: f64) -> Result<Texture, GpuError> {
         return gpu.texture2_from("no forward peak", [1; 2], Format::R32Float, &[0.0_f32], "");
     }
     gpu.texture2_from("forward peak", dims, Format::R32Float, &peak::peak_table(g), "")
-}
-
-/// What stands behind the medium.
-struct Backdrop {
-    /// 0 nothing, 1 constant, 2 a map.
-    kind: u32,
-    radiance: [f64; 3],
-    rotate_y: f64,
-    map: Texture,
-}
-
-impl Backdrop {
-    fn new(gpu: &Gpu, environment: Option<&Environment>, seen: bool) -> Result<Self, GpuError> {
-        let none = |kind, radiance| {
-            let map = gpu.texture2_from("no map", [1, 1], Format::Rgba32Float, &[[0.0_f32; 4]], "")?;
-            Ok(Self { kind, radiance, rotate_y: 0.0, map })
-        };
-        match environment.filter(|_| seen) {
-            None => none(0, [0.0; 3]),
-            Some(Environment::Constant(radiance)) => none(1, *radiance),
-            Some(Environment::Map(map)) => {
-                let texels: Vec<[f32; 4]> = map.texels.iter().map(|t| [t[0], t[1], t[2], 0.0]).collect();
-                let size = [map.width, map.height];
-                let remedy = "use a smaller picture as environment";
-                let texture = gpu.texture2_from("environment", size, Format::Rgba32Float, &texels, remedy)?;
-                Ok(Self { kind: 2, radiance: [map.scale; 3], rotate_y: map.rotate_y, map: texture })
-            }
-        }
-    }
 }
 
 #[cfg(test)]
