@@ -13,6 +13,7 @@ use std::f64::consts::PI;
 
 use glam::{DVec3, DVec4};
 
+use crate::light::Window;
 use crate::optics::delta::DeltaScaled;
 use crate::volume::field::Field;
 
@@ -90,6 +91,8 @@ pub struct OracleBeam {
     pub light: BeamLight,
     /// Unscaled optical depth from the light, at the cells' corners.
     pub tau_corners: Field<f64>,
+    /// What of its forward light the environment's stack carries instead.
+    pub window: Option<Window>,
 }
 
 /// The state (phi, F) of a constant radiance from everywhere.

@@ -16,8 +16,11 @@
 //! Limits: one table of K for all spreads a0; no environment stack; near a point light r⁻²
 //! is that of the pair. Tested with closed forms; as a chain in `oracle_scene/tests.rs`.
 
+use std::f64::consts::PI;
+
 use glam::{DVec3, DVec4};
 
+use crate::light::Window;
 use crate::nodes::oracle_scene::{BeamLight, OracleBeam, OracleMedium};
 use crate::optics::lobe::SquaredLinearLobe;
 use crate::optics::peak;
@@ -176,14 +179,28 @@ fn add_light(
         let deflected = (segment.reach * (-scaled.k * tau_n).exp() - unscattered).max(0.0);
         let peak = peak::lookup(scene.peak_table, medium.albedo * (tau_n + segment.tau_c), mu);
         let power = medium.albedo * irradiance;
-        seen.single += power * unscattered * hg(mu, medium.g * beam.light.spread());
-        seen.forward += power * deflected * peak;
+        let kept = |phase: f64| match beam.window {
+            Some(window) if medium.g > 0.0 => without_forward(phase, mu, medium.g, window),
+            _ => phase,
+        };
+        seen.single += power * unscattered * kept(hg(mu, medium.g * beam.light.spread()));
+        seen.forward += power * deflected * kept(peak);
     }
     let light = scene.residual.trilinear_clamp(p);
     let flux = DVec3::new(light.y, light.z, light.w);
     let ratio = scaled.sigma_s_ratio;
     let lobe = SquaredLinearLobe::new(ratio * light.x, ratio * scaled.g_star * flux);
     seen.residual += segment.reach * lobe.eval(-ray_direction);
+}
+
+/// A phase function less what the environment's stack carries of it: W + (phase − W)(1 − w(mu)), W the part as
+/// even as the residual's sources, \[(1−f) + 3(g−f) mu\]₊/4π, and w a smooth step from 0 at the window's outer
+/// angle to 1 at its inner one.
+fn without_forward(phase: f64, mu: f64, g: f64, window: Window) -> f64 {
+    let [inner, outer] = window.cosines();
+    let part = ((mu - outer) / (inner - outer)).clamp(0.0, 1.0);
+    let even = ((1.0 - g * g) + 3.0 * (g - g * g) * mu).max(0.0) / (4.0 * PI);
+    even + (phase - even) * (1.0 - part * part * (3.0 - 2.0 * part))
 }
 
 /// r⁻² [1/m²] at the distance `r_m` from a point light, as a segment sees it: within the ball whose

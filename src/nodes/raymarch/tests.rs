@@ -1,3 +1,6 @@
+use std::f64::consts::PI;
+use std::sync::Arc;
+
 use glam::{DVec3, DVec4};
 use serde_json::json;
 
@@ -5,10 +8,12 @@ use super::MarchParams;
 use super::layers::Pixel;
 use super::oracle::{MarchScene, Marched, Ray, box_interval, march_through};
 use crate::camera::Camera;
+use crate::geometry::Mesh;
 use crate::gpu::Gpu;
 use crate::graph::{PortType, Value};
 use crate::image::{ALPHA, BEAUTY, DEPTH, Image};
-use crate::light::environment::Environment;
+use crate::light::environment::{Environment, Map, STACK_X, Stack};
+use crate::light::{Ordinate, Ordinates, Window};
 use crate::nodes::oracle_scene::OracleBeam;
 use crate::nodes::testing::{
     Filling, Scene, assert_close, assert_layout, filtered, gpu, largest, oracle_light, output, point, states,
@@ -69,7 +74,11 @@ fn expected(scene: &Scene, channel: usize, lit: &Lit, rays: &[Ray]) -> Vec<March
     let medium = scene.oracle(channel);
     let table = peak_table(scene.g);
     let beams: Vec<OracleBeam> = (lit.beams.beams.iter().zip(&lit.taus))
-        .map(|(beam, tau)| OracleBeam { light: oracle_light(beam, channel), tau_corners: tau.clone() })
+        .map(|(beam, tau)| OracleBeam {
+            light: oracle_light(beam, channel),
+            tau_corners: tau.clone(),
+            window: beam.window,
+        })
         .collect();
     let march = MarchScene {
         medium: &medium,
@@ -164,6 +173,96 @@ fn parallel_light_is_seen_as_the_oracle_sees_it() {
     for g in [0.0, 0.85, -0.5] {
         assert_seen(gpu, &format!("g {g}"), &scene(g, [0.9; 3]), &suns, [0.0; 3]);
     }
+}
+
+#[test]
+fn windowed_light_leaves_its_forward_share_to_the_stack() {
+    let Some(gpu) = gpu() else { return };
+    let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0 });
+    // Towards the camera, aside, and away from it.
+    let beams = [DVec3::new(-0.8, 0.5, -0.6), DVec3::new(0.3, -0.2, 0.9), DVec3::new(0.8, -0.5, 0.6)]
+        .map(|direction| Beam { window, a0: 0.9, ..sun(direction, 1.0) });
+    for g in [0.5, 0.85] {
+        let mixed = [&beams[..], &[sun(DVec3::Y, 0.5)]].concat();
+        assert_seen(gpu, &format!("g {g}"), &scene(g, [0.9; 3]), &mixed, [0.0; 3]);
+    }
+}
+
+#[test]
+fn the_stack_shines_through_by_its_level() {
+    // A stack that is 1 + x everywhere is e^{x − T} (1 + x) of a ray of optical depth T, x = albedo f T, in
+    // each channel: linear between levels, so interpolation is exact.
+    let Some(gpu) = gpu() else { return };
+    let albedo = [1.0, 0.5, 0.9];
+    let scene = scene(0.85, albedo);
+    let medium = scene.medium(gpu);
+    let texels = STACK_X.iter().flat_map(|x| vec![[1.0 + *x as f32; 3]; 8]).collect();
+    let stack = Some(Arc::new(Stack { width: 4, height: 2, texels }));
+    let dark = Arc::new(vec![[0.0; 3]; 8]);
+    let map = Map { width: 4, height: 2, texels: dark, scale: 1.0, rotate_y: 0.3, stack };
+    let map = Value::new(PortType::Environment, 0, Environment::Map(map));
+    let camera = camera(&scene, DVec3::new(-14.0, 9.0, -11.0));
+    let image = march(gpu, &[("medium", &medium), ("environment", &map)], camera);
+    let tau: Vec<f64> = channel(&image, ALPHA, 0).iter().map(|alpha| -(1.0 - alpha).ln()).collect();
+    assert!(largest(&tau) > 1.0, "{tau:?}");
+    for (c, albedo) in albedo.into_iter().enumerate() {
+        let x = |tau: f64| albedo * 0.85 * 0.85 * tau;
+        let expected: Vec<f64> = tau.iter().map(|tau| (x(*tau) - tau).exp() * (1.0 + x(*tau))).collect();
+        // tau by way of an alpha of 24 bits; the level by sixteen clamped sums, of which an ulp is 1e-6.
+        assert_close("forward", &channel(&image, "forward", c), &expected, filtered(gpu, 2e-5), 0.0);
+        assert_close("beauty", &channel(&image, BEAUTY, c), &expected, filtered(gpu, 2e-5), 0.0);
+    }
+}
+
+#[test]
+fn a_floor_is_lit_by_the_sun_and_seen_through_the_medium() {
+    // A floor below a homogeneous slab, lit by a sun at 60 degrees and seen from above: E = 3 cos 60 deg e^{-k
+    // tau / cos 60 deg}, L = reflectance E / pi e^{-k tau}; beside it the bare floor. The medium is a closed
+    // shape, so both depths are exact.
+    let Some(gpu) = gpu() else { return };
+    let slab = json!({ "kind": "box", "size": [40.0, 1.0, 40.0], "resolution": 16 });
+    let volume = output(gpu, "shape", slab, &[]);
+    let albedo = [0.9, 0.5, 0.9];
+    let optics = json!({ "density_scale": 0.8, "albedo": albedo, "g": 0.5 });
+    let medium = output(gpu, "medium", optics, &[("volume", &volume)]);
+    let corners = [[-50.0, -50.0], [50.0, -50.0], [50.0, 50.0], [-50.0, 50.0]];
+    let floor = Mesh {
+        positions: corners.map(|[x, z]| DVec3::new(x, -1.0, z)).to_vec(),
+        triangles: vec![[0, 1, 2], [0, 2, 3]],
+        reflectance: [0.5, 0.3, 0.1],
+        n_degenerate: 0,
+    };
+    let floor = Value::new(PortType::Surface, 0, floor);
+    let direction = DVec3::new(0.75f64.sqrt(), -0.5, 0.0);
+    let ordinate = Ordinate { direction, irradiance: [3.0; 3], a0: 1.0, region: None, window: None };
+    let ordinates = Ordinates { ordinates: vec![ordinate], ambient: [0.0; 3] };
+    let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
+    let inputs = [("medium", &medium), ("ordinates", &ordinates), ("surfaces", &floor)];
+    let beams = output(gpu, "principal_propagation", json!({}), &inputs);
+    let see = |x: f64| {
+        let camera = Camera {
+            position: DVec3::new(x, 10.0, 0.0),
+            look_at: DVec3::new(x, 0.0, 0.0),
+            up: DVec3::Z,
+            fov_y_deg: 1.0,
+            width: 1,
+            height: 1,
+        };
+        march(gpu, &[("medium", &medium), ("beams", &beams), ("surfaces", &floor)], camera)
+    };
+    let (through, beside) = (see(0.0), see(-45.0));
+    for c in 0..3 {
+        let reflectance = [0.5, 0.3, 0.1][c];
+        let bare = reflectance * 3.0 * 0.5 / PI;
+        let k: f64 = 1.0 - albedo[c] * 0.25;
+        let expected = bare * (-k * 0.8 * 3.0).exp();
+        // Lengths of some 100 cells in f32.
+        assert_close("bare", &channel(&beside, "surface", c), &[bare], 1e-5, 0.0);
+        assert_close("through", &channel(&through, "surface", c), &[expected], 2e-5, 0.0);
+    }
+    assert_eq!(channel(&through, ALPHA, 0), [1.0]);
+    let depth = channel(&beside, DEPTH, 0)[0];
+    assert!((depth - 11.0).abs() < 1e-4, "{depth}");
 }
 
 #[test]

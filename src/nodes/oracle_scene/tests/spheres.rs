@@ -46,7 +46,7 @@ fn solved(g: f64, albedo: f64, tau: f64) -> (OracleMedium, Vec<OracleBeam>, Fiel
     let mut sources = Sources::new([N; 3], 0.0);
     sources.add_beam(&medium, &light, &mean);
     let residual = solve(Level::new(&medium, sources), Quality::Default.options()).state;
-    (medium, vec![OracleBeam { light, tau_corners }], residual)
+    (medium, vec![OracleBeam { light, tau_corners, window: None }], residual)
 }
 
 fn tau_to_light(tau: f64, p: DVec3) -> f64 {

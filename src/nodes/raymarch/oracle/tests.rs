@@ -10,7 +10,7 @@ fn medium(dims: [usize; 3], sigma: f64, albedo: f64, g: f64) -> OracleMedium {
 
 fn beam(light: BeamLight) -> OracleBeam {
     // These tests give tau in closed form; the field is not read.
-    OracleBeam { light, tau_corners: Field::filled([1, 1, 1], f64::NAN) }
+    OracleBeam { light, tau_corners: Field::filled([1, 1, 1], f64::NAN), window: None }
 }
 
 fn scene<'a>(
@@ -192,7 +192,7 @@ fn fields_are_looked_up_where_they_stand() {
     let residual = constant_light([4, 4, 8], 0.0);
     let light = BeamLight::Parallel { direction: DVec3::X, irradiance: 1.0, spread: 1.0 };
     let tau_corners = Field::from_fn([5, 5, 9], |[_, _, z]| z as f64);
-    let beams = [OracleBeam { light, tau_corners }];
+    let beams = [OracleBeam { light, tau_corners, window: None }];
     let table = peak::peak_table(0.0);
     let mut scene = scene(&medium, &beams, &residual, &table);
     scene.step = 0.01;
