@@ -15,6 +15,7 @@ mod camera;
 mod environment;
 #[cfg(test)]
 mod extremes;
+mod importance_propagation;
 mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
@@ -43,6 +44,7 @@ pub static KINDS: &[NodeKind] = &[
     point_light::KIND,
     environment::KIND,
     camera::KIND,
+    importance_propagation::KIND,
     light_decomposition::KIND,
     principal_propagation::KIND,
     spherical_propagation::KIND,
