@@ -31,6 +31,23 @@ pub struct Map {
     pub scale: f64,
     /// Turn about +Y in radians.
     pub rotate_y: f64,
+    /// What shines through a medium, where prefilter has made it.
+    pub stack: Option<Arc<Stack>>,
+}
+
+/// Numbers of forward scatterings that the levels of a [`Stack`] are for.
+pub const STACK_X: [f64; 16] =
+    [0.0, 0.125, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0];
+
+/// What of a map shines forward through x scatterings, for each x of [`STACK_X`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Stack {
+    /// Texels around.
+    pub width: usize,
+    /// Texels from +Y to −Y.
+    pub height: usize,
+    /// Level after level, each row by row as the map's own; times `scale`, before `rotate_y`.
+    pub texels: Vec<[f32; 3]>,
 }
 
 impl Environment {
@@ -66,7 +83,7 @@ mod tests {
     use super::*;
 
     fn map(rotate_y: f64) -> Map {
-        Map { width: 8, height: 4, texels: Arc::new(vec![[1.0; 3]; 32]), scale: 2.0, rotate_y }
+        Map { width: 8, height: 4, texels: Arc::new(vec![[1.0; 3]; 32]), scale: 2.0, rotate_y, stack: None }
     }
 
     #[test]

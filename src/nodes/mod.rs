@@ -23,6 +23,7 @@ mod medium;
 #[cfg(test)]
 mod oracle_scene;
 mod point_light;
+mod prefilter;
 mod principal_propagation;
 mod raymarch;
 mod save_image;
@@ -46,6 +47,7 @@ pub static KINDS: &[NodeKind] = &[
     camera::KIND,
     importance_propagation::KIND,
     light_decomposition::KIND,
+    prefilter::KIND,
     principal_propagation::KIND,
     spherical_propagation::KIND,
     isotropic_residual::KIND,

@@ -55,6 +55,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             texels: Arc::new(picture.pixels().to_vec()),
             scale,
             rotate_y: run.params.f64("rotate_y_deg").to_radians(),
+            stack: None,
         })
     } else {
         Environment::Constant(run.params.rgb("radiance").map(|c| c * scale))

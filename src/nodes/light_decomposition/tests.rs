@@ -49,7 +49,7 @@ fn constants_are_ambient_and_maps_keep_their_power() {
     assert_eq!(*light.get::<Ordinates>(), Ordinates { ambient: [0.1, 0.2, 0.3], ..Default::default() });
     // 2 everywhere and 3 more in one row: the row's solid angle in all ordinates together.
     let texels = (0..32 * 16).map(|idx| if idx / 32 == 4 { [5.0; 3] } else { [2.0; 3] }).collect();
-    let map = Map { width: 32, height: 16, texels: Arc::new(texels), scale: 0.5, rotate_y: 0.3 };
+    let map = Map { width: 32, height: 16, texels: Arc::new(texels), scale: 0.5, rotate_y: 0.3, stack: None };
     let expected = 0.5 * 3.0 * 32.0 * map.solid_angle(4);
     let map = Value::new(PortType::Environment, 0, Environment::Map(map));
     for method in ["median_cut", "uniform"] {

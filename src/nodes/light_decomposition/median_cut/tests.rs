@@ -6,7 +6,7 @@ use crate::nodes::testing::Random;
 
 fn map(width: usize, height: usize, texel: impl Fn(usize, usize) -> [f32; 3]) -> Environment {
     let texels = (0..width * height).map(|n| texel(n % width, n / width)).collect();
-    Environment::Map(Map { width, height, texels: Arc::new(texels), scale: 1.5, rotate_y: 0.4 })
+    Environment::Map(Map { width, height, texels: Arc::new(texels), scale: 1.5, rotate_y: 0.4, stack: None })
 }
 
 /// Fluence of each channel, and the luminance's irradiance vector towards the light, texel by texel; what
