@@ -16,6 +16,7 @@ mod environment;
 mod extremes;
 #[cfg(test)]
 mod hits;
+mod importance_propagation;
 mod isotropic_residual;
 mod light_decomposition;
 mod load_vdb;
@@ -24,6 +25,7 @@ mod mesh;
 #[cfg(test)]
 mod oracle_scene;
 mod point_light;
+mod prefilter;
 mod principal_propagation;
 mod raymarch;
 mod save_image;
@@ -47,7 +49,9 @@ pub static KINDS: &[NodeKind] = &[
     environment::KIND,
     mesh::KIND,
     camera::KIND,
+    importance_propagation::KIND,
     light_decomposition::KIND,
+    prefilter::KIND,
     principal_propagation::KIND,
     spherical_propagation::KIND,
     isotropic_residual::KIND,

@@ -1,4 +1,4 @@
-//! What travels on wires with fields on the GPU: media, beams, residuals, surfaces.
+//! What travels on wires with fields on the GPU: media, beams, importance, residuals, surfaces.
 //!
 //! Nodes never know each other; these types are what they agree on. Light, ordinates, cameras and
 //! pictures are plain values of their own modules. All fields are in the index space of the medium's
@@ -7,12 +7,14 @@
 
 mod beams;
 mod channels;
+mod importance;
 mod medium;
 mod residual;
 mod surfaces;
 
 pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
 pub use channels::Channels;
+pub use importance::Importance;
 pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;
 pub use surfaces::{SurfaceNode, SurfaceTriangle, Surfaces};

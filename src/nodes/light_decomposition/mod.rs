@@ -3,8 +3,8 @@
 use super::{NodeKind, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::light::environment::Environment;
-use crate::light::importance::Importance;
 use crate::light::{Light, Ordinate, Ordinates};
+use crate::wire::Importance;
 
 mod median_cut;
 mod region;
@@ -74,7 +74,10 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         let count = run.params.i64("count") as usize;
         let (ordinates, from_all_sides) = match run.params.text("method") {
             "uniform" => uniform::split(environment, count),
-            _ => median_cut::split(environment, count, run.inputs.maybe::<Importance>("importance")),
+            _ => {
+                let importance = run.inputs.maybe::<Importance>("importance");
+                median_cut::split(environment, count, importance.map(|importance| &importance.light))
+            }
         };
         light.ordinates.extend(ordinates);
         for (ambient, radiance) in light.ambient.iter_mut().zip(from_all_sides) {

@@ -2,7 +2,6 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::*;
-use crate::light::importance::Lobe;
 use crate::nodes::testing::Random;
 
 fn map(width: usize, height: usize, texel: impl Fn(usize, usize) -> [f32; 3]) -> Environment {
@@ -63,7 +62,7 @@ fn noisy(width: usize, height: usize) -> Environment {
 }
 
 fn towards(axis: DVec3) -> Importance {
-    Importance { floor: 0.25, lobes: vec![Lobe { axis, g: 0.8, weight: 0.75 }] }
+    Importance { axis, g: 0.8, strength: 0.75 }
 }
 
 #[test]

@@ -1,0 +1,100 @@
+//! `prefilter`: an environment for the eye behind a medium, and its ordinates for what remains (DESIGN 6.5).
+//!
+//! Light that is scattered forward by a few degrees comes nearly straight along the view ray: what shows is
+//! the environment itself, blurred by each scattering once more, and no number of ordinates would draw it.
+//! The stack holds it for 16 numbers x of scatterings, e^−x Σ_{j≥1} x^j/j! [Env ⊗ w peak_j], Env without its
+//! ambient (`kernel.rs`, `harmonics.rs`); the ordinates lose that share by their window. Units as the map's,
+//! [W/(m² sr)]; texels may be negative near the window's outer angle from a sun.
+//!
+//! The stack has n rows and 2n columns, n the power of two over 10/(1−g), in 64 … 256. Between texels
+//! bilinear interpolation takes up to 5 % off the very peak of light from a single texel, 12 % for g over
+//! 0.97; elsewhere and for wider light it is right to 1e-3. For g over 0.961 suns are smoothed by up to 1°
+//! (`kernel.rs`). Tested against a sum over texels.
+
+use std::sync::Arc;
+
+use super::{NodeKind, Run, no_files};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
+use crate::light::environment::{Environment, Map, Stack};
+use crate::light::{Ordinate, Ordinates, Window};
+use crate::wire::Medium;
+
+mod fft;
+mod harmonics;
+mod kernel;
+
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+
+static SPEC: NodeSpec = NodeSpec {
+    id: "prefilter",
+    version: 1,
+    category: Category::Transport,
+    purpose: "Makes an environment ready to be seen through a medium that scatters forward.",
+    doc: "Every ordinate becomes as wide as its region. What of the environment shines through the medium, blurred, then comes \
+          from the map itself, as sharp as it is, not from ordinates. For maps and g over 0; constant light passes as it is.",
+    inputs: &[
+        PortSpec::new("environment", PortType::Environment, "what was split"),
+        PortSpec::new("ordinates", PortType::Ordinates, "what it was split into, by light_decomposition"),
+        PortSpec::new("medium", PortType::Medium, "what it is seen through"),
+    ],
+    outputs: &[
+        PortSpec::new("ordinates", PortType::Ordinates, "the beams, for principal_propagation"),
+        PortSpec::new("environment", PortType::Environment, "for raymarch.environment"),
+    ],
+    params: &[ParamSpec::vector("window_deg", &[30.0, 70.0]).unit("deg").between(0.0, 180.0).soft(5.0, 90.0).doc(
+        "Light scattered by less than the first angle is the environment's, by more than the second the ordinates'.",
+    )],
+};
+
+fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let environment: &Environment = run.inputs.one("environment");
+    let light: &Ordinates = run.inputs.one("ordinates");
+    let medium: &Medium = run.inputs.one("medium");
+    let [inner_deg, outer_deg] = run.params.vec("window_deg");
+    if inner_deg >= outer_deg {
+        return Err(NodeError::new(format!(
+            "window_deg is [{inner_deg}, {outer_deg}]: the first angle must be the smaller one"
+        )));
+    }
+    let window = Window { inner_deg, outer_deg };
+    let stack = match environment {
+        Environment::Map(map) if medium.g > 0.0 => Some(stack(map, environment.minimum(), medium.g, window)),
+        _ => None,
+    };
+    run.cancel.check()?;
+    let widened = |ordinate: &Ordinate| match ordinate.region {
+        Some(spread) => Ordinate { a0: spread, window: stack.as_ref().map(|_| window), ..*ordinate },
+        None => *ordinate,
+    };
+    let ordinates =
+        Ordinates { ordinates: light.ordinates.iter().map(widened).collect(), ambient: light.ambient };
+    let bytes = size_of_val(ordinates.ordinates.as_slice()) as u64;
+    let ordinates = Value::new(PortType::Ordinates, bytes, ordinates);
+    let environment = match (environment, stack) {
+        (Environment::Map(map), Some(stack)) => {
+            let bytes = size_of_val(stack.texels.as_slice()) as u64;
+            let map = Map { stack: Some(Arc::new(stack)), ..map.clone() };
+            Value::new(PortType::Environment, bytes, Environment::Map(map))
+        }
+        _ => run.inputs.values("environment")[0].clone(),
+    };
+    Ok(vec![ordinates, environment])
+}
+
+/// Degrees, and rows, of a stack.
+const MIN_DEGREES: usize = 64;
+const MAX_DEGREES: usize = 256;
+
+fn stack(map: &Map, minimum: [f64; 3], g: f64, window: Window) -> Stack {
+    let n = (kernel::degrees_needed(g).min(MAX_DEGREES as f64) as usize).next_power_of_two().max(MIN_DEGREES);
+    let excess = |row: usize, column: usize| {
+        let texel = map.texels[row * map.width + column];
+        std::array::from_fn(|c| f64::from(texel[c]) * map.scale - minimum[c])
+    };
+    let picture = harmonics::Picture { width: map.width, height: map.height, texels: &excess };
+    let texels = harmonics::convolve(&picture, &kernel::factors(g, window, n));
+    Stack { width: 2 * n, height: n, texels }
+}
+
+#[cfg(test)]
+mod tests;
