@@ -94,7 +94,14 @@ mod tests {
     fn map(texel: impl Fn(usize, usize) -> [f32; 3]) -> Environment {
         let (width, height) = (256, 128);
         let texels = (0..width * height).map(|n| texel(n % width, n / width)).collect();
-        Environment::Map(Map { width, height, texels: Arc::new(texels), scale: 1.5, rotate_y: 0.4, stack: None })
+        Environment::Map(Map {
+            width,
+            height,
+            texels: Arc::new(texels),
+            scale: 1.5,
+            rotate_y: 0.4,
+            stack: None,
+        })
     }
 
     #[test]
