@@ -3,8 +3,10 @@
 //!
 //! Two things leave it: the distribution over directions for the decomposition (`view.rs`), from the
 //! optical depths of 32 × 32 rays over the picture, and the field of the camera's own optical depth at the
-//! corners of cells, a walk as to a point light. Limits: rays between those of the grid are not seen, so
-//! matter thinner than 1/32 of the picture may be missed; no light that surfaces send.
+//! corners of cells, a walk as to a point light. What it takes off the error of 16 ordinates: at g 0.9 half,
+//! over four skies (0.137 to 0.069; `tests/importance.rs` holds two of them); over two skies, 40 % at 0.7,
+//! 6 % at 0.5, nothing at 0. Limits: what is between rays is not seen, so matter thinner than 1/32 of the
+//! picture may be missed; no light that surfaces send. Tested against an f64 oracle.
 
 use glam::DVec3;
 
