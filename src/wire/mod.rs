@@ -9,10 +9,12 @@ mod beams;
 mod channels;
 mod medium;
 mod residual;
+mod surface_light;
 mod surfaces;
 
 pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
 pub use channels::Channels;
 pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;
+pub use surface_light::SurfaceLight;
 pub use surfaces::{SurfaceNode, SurfaceTriangle, Surfaces};
