@@ -21,6 +21,8 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("stack", SWITCH),
     ("surfaces", SWITCH),
     ("shadows", SWITCH),
+    ("gathered", SWITCH),
+    ("narrow", SWITCH),
 ];
 
 /// Ways to fill in the names that the text asks for: all products of those with many values; of those that are

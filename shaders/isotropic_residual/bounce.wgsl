@@ -7,7 +7,8 @@ struct BounceParams {
     level: Level,
     shape: Shape,
     n_beams: u32,
-    n_patches: u32,
+    // Points that are lit.
+    n_points: u32,
     // Edge of the cells that surfaces light, in cells of the level.
     coarser: u32,
     pad: u32,

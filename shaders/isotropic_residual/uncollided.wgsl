@@ -9,7 +9,7 @@
 @group(1) @binding(2) var<storage, read> surface_nodes: array<SurfaceNode>;
 @group(1) @binding(3) var<storage, read> surface_triangles: array<SurfaceTriangle>;
 @group(1) @binding(4) var<storage, read> patch_grids: array<vec2u>;
-@group(1) @binding(5) var<storage, read> patch_radiances: array<vec4f>;
+@group(1) @binding(5) var<storage, read> patch_irradiances: array<vec4f>;
 @group(2) @binding(0) var uncollided: texture_storage_3d<rgba32float, write>;
 
 const N_DIRECTIONS: u32 = 32u;

@@ -10,6 +10,14 @@ struct Beam {
     window: vec4f,
 }
 
+// From this spread on a parallel beam's shadows are sharp: within 1.8 degrees of its direction.
+const NARROW: f32 = 0.9995;
+
+// Whether surfaces that are seen are lit by this beam point by point, because its shadows are sharp.
+fn is_narrow(beam: Beam) -> bool {
+    return beam.place.w > 0.0 || beam.power.w >= NARROW;
+}
+
 // Beams whose optical depths share a texel of the atlas.
 const PACK: u32 = {pack}u;
 

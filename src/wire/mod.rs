@@ -10,6 +10,7 @@ mod channels;
 mod importance;
 mod medium;
 mod residual;
+mod surface_light;
 mod surfaces;
 
 pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
@@ -17,4 +18,5 @@ pub use channels::Channels;
 pub use importance::Importance;
 pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;
+pub use surface_light::SurfaceLight;
 pub use surfaces::{SurfaceNode, SurfaceTriangle, Surfaces};

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::Channels;
+use super::{Channels, SurfaceLight};
 use crate::gpu::Texture;
 use crate::volume::Lattice;
 
@@ -17,4 +17,6 @@ pub struct Residual {
     pub channels: Channels,
     /// The last sweep's power in / (out + absorbed), per channel: 1 where it had settled.
     pub balance: [f64; 3],
+    /// What arrives on surfaces, where there are any.
+    pub surface_light: Option<Arc<SurfaceLight>>,
 }

@@ -126,7 +126,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     } else {
         bounce::solve(run, medium, &beams, &surfaces, &problem, effort, channels)?
     };
-    let bytes = residual.moments.bytes();
+    let bytes = residual.moments.bytes() + residual.surface_light.as_ref().map_or(0, |light| light.bytes());
     Ok(vec![Value::new(PortType::Residual, bytes, residual)])
 }
 

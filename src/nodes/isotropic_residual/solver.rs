@@ -56,7 +56,13 @@ pub(super) fn solve(
     let finest = levels.into_iter().next().expect("there is at least the medium's own grid");
     let factors: Vec<f32> = run.gpu.read_buffer(&finest.balance)?;
     let balance = std::array::from_fn(|c| if c < problem.n_channels { f64::from(factors[c]) } else { 1.0 });
-    Ok(Residual { moments: Arc::new(finest.moments), lattice: medium.lattice.clone(), channels, balance })
+    Ok(Residual {
+        moments: Arc::new(finest.moments),
+        lattice: medium.lattice.clone(),
+        channels,
+        balance,
+        surface_light: None,
+    })
 }
 
 /// All grids, finest first.

@@ -3,7 +3,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use serde_json::json;
 
-use super::{BounceParams, Patch, coarser, middles};
+use super::{BounceParams, coarser};
 use crate::geometry::Mesh;
 use crate::gpu::Gpu;
 use crate::graph::{PortType, Value};
@@ -107,23 +107,6 @@ fn without_light_surfaces_are_black() {
     assert!(states[0].data.iter().all(|light| *light == glam::DVec4::ZERO));
 }
 
-/// `patch_at` of `shaders/lib/patches.wgsl`.
-fn patch_at(n: u32, [u, v]: [f32; 2]) -> u32 {
-    let i = ((u * n as f32) as u32).min(n - 1);
-    let j = ((v * n as f32) as u32).min(n - 1 - i);
-    let is_upper = u * n as f32 - i as f32 + v * n as f32 - j as f32 > 1.0 && i + j < n - 1;
-    n * n - (n - i) * (n - i) + 2 * j + u32::from(is_upper)
-}
-
-#[test]
-fn patches_are_numbered_as_they_are_looked_up() {
-    for n in [1, 2, 3, 17] {
-        let middles: Vec<[f32; 2]> = middles(n).collect();
-        assert_eq!(middles.len() as u32, n * n);
-        assert!(middles.iter().enumerate().all(|(idx, at)| patch_at(n, *at) == idx as u32), "{n}");
-    }
-}
-
 #[test]
 fn cells_that_look_for_patches_are_few_enough() {
     assert_eq!(coarser([64, 64, 64]), 1);
@@ -135,7 +118,7 @@ fn cells_that_look_for_patches_are_few_enough() {
 
 #[test]
 fn layouts_are_those_of_the_shaders() {
-    const SINGLE: [(&str, &str); 1] = [("pack", "1")];
     assert_layout::<BounceParams>("isotropic_residual/bounce.wgsl", "BounceParams", &[]);
-    assert_layout::<Patch>("isotropic_residual/patch_light.wgsl", "Patch", &SINGLE);
 }
+
+mod seen;

@@ -1,5 +1,5 @@
-// A thread: the radiance that one side of a patch sends back: reflectance / pi times what arrives, from beams
-// through the medium and past surfaces, and from 64 directions: the medium's own light, surfaces, ambient light.
+// A thread: the irradiance [W/m2] on one side of a point of a surface, from beams through the medium and past
+// surfaces, and from 64 directions: the medium's own light, surfaces, ambient light.
 
 #import "isotropic_residual/bounce.wgsl"
 #import "lib/beam.wgsl"
@@ -7,9 +7,9 @@
 #import "lib/patches.wgsl"
 #import "lib/transmittance.wgsl"
 
-struct Patch {
-    // Its middle, in index space.
-    point: vec3f,
+struct SurfacePoint {
+    // In index space.
+    p: vec3f,
     triangle: u32,
 }
 
@@ -20,14 +20,16 @@ struct Patch {
 @group(1) @binding(3) var moments: texture_3d<f32>;
 @group(1) @binding(4) var<storage, read> surface_nodes: array<SurfaceNode>;
 @group(1) @binding(5) var<storage, read> surface_triangles: array<SurfaceTriangle>;
-@group(1) @binding(6) var<storage, read> patches: array<Patch>;
+@group(1) @binding(6) var<storage, read> points: array<SurfacePoint>;
 @group(1) @binding(7) var<storage, read> patch_grids: array<vec2u>;
-@group(1) @binding(8) var<storage, read> patch_radiances: array<vec4f>;
+@group(1) @binding(8) var<storage, read> patch_irradiances: array<vec4f>;
 @group(1) @binding(9) var<storage, read> beams: array<Beam>;
-@group(2) @binding(0) var<storage, read_write> reflected: array<vec4f>;
+@group(2) @binding(0) var<storage, read_write> irradiances: array<vec4f>;
 
 const N_DIRECTIONS: u32 = 64u;
 const FAR: f32 = 1e30;
+// Whether beams count whose light the camera adds point by point.
+const HAS_NARROW: bool = {narrow};
 
 // Irradiance of one beam on a side, per channel.
 fn from_beam(beam: Beam, p: vec3f, normal: vec3f) -> vec3f {
@@ -91,13 +93,13 @@ fn arriving(p: vec3f, direction: vec3f) -> vec3f {
 }
 
 @compute @workgroup_size(64, 1, 1)
-fn isotropic_residual_patch_light(@builtin(global_invocation_id) id: vec3u) {
+fn isotropic_residual_surface_light(@builtin(global_invocation_id) id: vec3u) {
     // Beyond 65,535 groups along x, threads stand along y.
     let idx = id.x + 4194240u * id.y;
-    if idx >= 2u * params.n_patches {
+    if idx >= 2u * params.n_points {
         return;
     }
-    let lit = patches[idx / 2u];
+    let lit = points[idx / 2u];
     let corners = surface_triangles[lit.triangle];
     let ab = corners.b.xyz - corners.a.xyz;
     let ac = corners.c.xyz - corners.a.xyz;
@@ -105,7 +107,9 @@ fn isotropic_residual_patch_light(@builtin(global_invocation_id) id: vec3u) {
     let normal = select(front, -front, idx % 2u == 1u);
     var irradiance = vec3f(0.0);
     for (var n = 0u; n < params.n_beams; n += 1u) {
-        irradiance += from_beam(beams[n], lit.point, normal);
+        if HAS_NARROW || !is_narrow(beams[n]) {
+            irradiance += from_beam(beams[n], lit.p, normal);
+        }
     }
     let across = normalize(select(vec3f(0.0, -normal.z, normal.y), vec3f(-normal.y, normal.x, 0.0), abs(normal.z) < 0.7));
     let along = cross(normal, across);
@@ -115,9 +119,7 @@ fn isotropic_residual_patch_light(@builtin(global_invocation_id) id: vec3u) {
         let share = (f32(n) + 0.5) / f32(N_DIRECTIONS);
         let angle = 2.39996323 * f32(n);
         let flat_part = sqrt(share) * vec2f(cos(angle), sin(angle));
-        sum += arriving(lit.point, flat_part.x * across + flat_part.y * along + sqrt(1.0 - share) * normal);
+        sum += arriving(lit.p, flat_part.x * across + flat_part.y * along + sqrt(1.0 - share) * normal);
     }
-    irradiance += sum * (PI / f32(N_DIRECTIONS));
-    // One channel is grey, whatever component is taken.
-    reflected[idx] = vec4f(surface_reflectance(lit.triangle) / PI * irradiance, 0.0);
+    irradiances[idx] = vec4f(irradiance + sum * (PI / f32(N_DIRECTIONS)), 0.0);
 }

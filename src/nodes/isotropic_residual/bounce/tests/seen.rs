@@ -1,0 +1,106 @@
+//! What a camera finds on surfaces.
+
+use std::f64::consts::PI;
+
+use glam::Vec3;
+
+use super::super::cuts::tests::{Look, look_up};
+use super::*;
+use crate::wire::{Beams, Surfaces};
+
+/// Looks at points of triangles, as numbered, along directions.
+type Looks<'a> = &'a dyn Fn(&[[Vec3; 3]]) -> Vec<(Vec3, usize, Vec3)>;
+
+/// Irradiance at points of a surface.
+fn seen(gpu: &Gpu, medium: &Value, beams: &Value, surface: &Value, looks: Looks) -> Vec<[f64; 3]> {
+    let inputs = [("medium", medium), ("beams", beams), ("surfaces", surface)];
+    let residual = output(gpu, "isotropic_residual", json!({ "quality": "reference" }), &inputs);
+    let residual: &Residual = residual.get();
+    let surfaces = Surfaces::new(gpu, &residual.lattice, &[surface.get::<Mesh>()]).unwrap();
+    let look = |(p, triangle, direction): (Vec3, usize, Vec3)| Look {
+        p: p.to_array(),
+        triangle: triangle as u32,
+        direction: direction.extend(0.0).to_array(),
+    };
+    let looks: Vec<Look> = looks(&surfaces.corners).into_iter().map(look).collect();
+    look_up(gpu, residual.surface_light.as_ref().unwrap(), &surfaces, &looks)
+}
+
+fn middle([a, b, c]: [Vec3; 3]) -> Vec3 {
+    (a + b + c) / 3.0
+}
+
+#[test]
+fn a_floor_gets_the_sky_and_wide_beams() {
+    // In a void pi L of the sky on both sides, and E cos of a wide beam on the upper one; the narrow sun is
+    // not for corners.
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { g: 0.0, ..Scene::new([6, 5, 4], Filling::Homogeneous, 1e-5) };
+    let medium = scene.medium(gpu);
+    let floor = scene.plate([-40.0, -30.0], [40.0, 30.0], -2.3);
+    let wide = Beam { a0: 0.999, power: [3.0, 2.0, 1.0], ..sun(DVec3::new(0.6, 0.0, -0.8), 1.0) };
+    let sky = [1.0, 0.5, 0.25];
+    let lights = [wide, sun(DVec3::NEG_Z, 100.0)];
+    let beams = scene.propagate_behind(gpu, &medium, &lights, sky, &[&floor]);
+    let found = seen(gpu, &medium, &beams, &floor, &|triangles| {
+        let both = |(n, triangle): (usize, &[Vec3; 3])| {
+            [Vec3::NEG_Z, Vec3::Z].map(|direction| (middle(*triangle), n, direction))
+        };
+        triangles.iter().enumerate().flat_map(both).collect()
+    });
+    assert_eq!(found.len(), 4);
+    for (idx, irradiance) in found.iter().enumerate() {
+        let direct = if idx % 2 == 0 { 0.8 } else { 0.0 };
+        let expected: Vec<f64> = (0..3).map(|c| PI * sky[c] + direct * wide.power[c]).collect();
+        // The medium takes less than 1e-4.
+        assert_close("irradiance", irradiance, &expected, 2e-4, 0.0);
+    }
+}
+
+#[test]
+fn light_is_one_across_the_triangles_of_a_plate() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { g: 0.3, ..Scene::new([8, 8, 8], Filling::Random, 3.0) };
+    let medium = scene.medium(gpu);
+    let floor = scene.plate([-6.0, -6.0], [14.0, 14.0], -1.2);
+    let wide = Beam { a0: 0.99, ..sun(DVec3::new(0.3, 0.1, -0.9), 2.0) };
+    let beams = scene.propagate_behind(gpu, &medium, &[wide], [0.5; 3], &[&floor]);
+    let along = |n: usize| Vec3::new(-6.0, -6.0, -1.2) + 20.0 * n as f32 / 100.0 * Vec3::new(1.0, 1.0, 0.0);
+    let found = seen(gpu, &medium, &beams, &floor, &|_| {
+        (0..=100).flat_map(|n| [0, 1].map(|triangle| (along(n), triangle, Vec3::NEG_Z))).collect()
+    });
+    let one: Vec<f64> = found.iter().step_by(2).map(|e| e[0]).collect();
+    let other: Vec<f64> = found.iter().skip(1).step_by(2).map(|e| e[0]).collect();
+    let (least, most) = one.iter().fold((f64::MAX, 0.0_f64), |(low, high), e| (low.min(*e), high.max(*e)));
+    assert!(most > 1.5 * least, "{least} .. {most}");
+    // Corners have moved by up to 1/48 of a cut, and optical depths are up to 0.75 a cell.
+    assert_close("irradiance", &one, &other, 0.02, 0.0);
+}
+
+#[test]
+fn no_light_counts_twice_in_a_ball() {
+    // What scatters without loss brings all that a ball sends to the ball: its mean irradiance rises by
+    // reflectance + reflectance^2 times that of the lamp, whatever the medium's depth.
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { albedo: [1.0; 3], g: 0.0, ..Scene::new([8, 8, 8], Filling::Homogeneous, 1.0) };
+    let medium = scene.medium(gpu);
+    let mean = |reflectance: f64| {
+        let (ball, mut lamp, irradiance) = ball_around(&scene, reflectance);
+        lamp.place = Place::Point(DVec3::new(3.5, 3.5, 10.5));
+        let beams = scene.propagate_behind(gpu, &medium, &[lamp], [0.0; 3], &[&ball]);
+        assert_eq!(beams.get::<Beams>().beams.len(), 1);
+        let found = seen(gpu, &medium, &beams, &ball, &|triangles| {
+            let outwards = |(n, triangle): (usize, &[Vec3; 3])| {
+                (middle(*triangle), n, middle(*triangle) - Vec3::splat(3.5))
+            };
+            triangles.iter().enumerate().map(outwards).collect()
+        });
+        found.iter().map(|e| e[0]).sum::<f64>() / found.len() as f64 / irradiance
+    };
+    let (black, grey) = (mean(0.0), mean(0.6));
+    // Light that nothing scatters is narrow: of the rest there is some, and less than all.
+    assert!(black > 0.05 && black < 1.0, "{black}");
+    // As for phi inside: the ball's flat triangles (2 %) of unequal areas, and its near side (1 %).
+    let expected = 0.6 * 1.6;
+    assert!(((grey - black) / expected - 1.0).abs() < 0.03, "{} against {expected}", grey - black);
+}
