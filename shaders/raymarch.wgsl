@@ -10,9 +10,10 @@
 #import "lib/beam.wgsl"
 #import "lib/lobe.wgsl"
 #import "lib/transmittance.wgsl"
+#import "lib/emission.wgsl"
 #import "raymarch/channels_{channels}.wgsl"
 #import "raymarch/beams.wgsl"
-#import "raymarch/beams.wgsl"
+#import "raymarch/emission.wgsl"
 
 struct MarchParams {
     shape: Shape,
@@ -56,6 +57,7 @@ struct MarchParams {
     pad_0: u32,
     pad_1: u32,
     pad_2: u32,
+    heat: Heat,
 }
 
 struct Pixel {
@@ -65,6 +67,7 @@ struct Pixel {
     single: vec4f,
     forward: vec4f,
     residual: vec4f,
+    emission: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> params: MarchParams;
@@ -77,6 +80,9 @@ struct Pixel {
 @group(1) @binding(6) var environment: texture_2d<f32>;
 @group(1) @binding(7) var linear_around: sampler;
 @group(1) @binding(8) var blocks: texture_3d<f32>;
+@group(1) @binding(9) var flame: texture_3d<f32>;
+@group(1) @binding(10) var temperature: texture_3d<f32>;
+@group(1) @binding(11) var blackbodies: texture_2d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Where less than this is left of a ray it ends.
@@ -90,6 +96,7 @@ const HAS_VOXELS: bool = {voxels};
 const HAS_POINTS: bool = {points};
 const HAS_PEAK: bool = {peak};
 const HAS_RESIDUAL: bool = {residual};
+const HAS_EMISSION: bool = {emission};
 
 // A number where it is known when the shader is compiled: what is the same along the ray is then computed once.
 fn n_beams() -> u32 {
@@ -100,6 +107,7 @@ struct Layers {
     single: Spectrum,
     forward: Spectrum,
     residual: Spectrum,
+    emission: Spectrum,
     // Optical depth of the whole ray, unscaled.
     tau: f32,
     // Sum of distance times what is absorbed there [cells].
@@ -155,6 +163,9 @@ fn march(direction: vec3f) -> Layers {
             if step_tau.x + step_tau.y > VOID {
                 break;
             }
+            if HAS_EMISSION {
+                layers.emission += through * length_m * (glow(params.eye + t.x * direction) + glow(far));
+            }
             n = max(n, floor((empty_until(blocks, params.eye, direction, far) - span.x) / (2.0 * dt) - 0.75));
         }
         if n >= n_pairs {
@@ -163,8 +174,10 @@ fn march(direction: vec3f) -> Layers {
 
         let kept_near = exp(-k * step_tau.x);
         let kept_far = exp(-k * step_tau.y);
-        let near = through * step_tau.x * per_channel_mean(k * step_tau.x, kept_near);
-        let far = through * kept_near * step_tau.y * per_channel_mean(k * step_tau.y, kept_far);
+        let seen_near = through * per_channel_mean(k * step_tau.x, kept_near);
+        let seen_far = through * kept_near * per_channel_mean(k * step_tau.y, kept_far);
+        let near = seen_near * step_tau.x;
+        let far = seen_far * step_tau.y;
         let half_way = sharp * exp(-step_tau.x);
         let end = half_way * exp(-step_tau.y);
         let seen = vec2f(largest(near), largest(far)) / (largest(near) + largest(far));
@@ -177,6 +190,10 @@ fn march(direction: vec3f) -> Layers {
         layers.forward += scattered.forward;
         if HAS_RESIDUAL {
             layers.residual += segment.reach * scatter * residual_of(p, direction);
+        }
+        if HAS_EMISSION {
+            let lights = seen_near * glow(params.eye + t.x * direction) + seen_far * glow(params.eye + t.y * direction);
+            layers.emission += length_m * lights;
         }
         layers.distance += dot(vec2f(sharp - half_way, half_way - end), t);
         layers.tau += step_tau.x + step_tau.y;
@@ -203,7 +220,7 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
         let layers = march(direction);
         let sharp = exp(-layers.tau);
         let through = exp(-spectrum(params.k) * layers.tau);
-        let lit = layers.single + layers.forward + layers.residual + (through - sharp) * spectrum(params.ambient);
+        let lit = layers.single + layers.forward + layers.residual + layers.emission + (through - sharp) * spectrum(params.ambient);
         var behind = vec3f(0.0);
         if params.backdrop == 1u {
             behind = params.background.xyz;
@@ -215,12 +232,14 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
         pixel.single += vec4f(color * rgb(layers.single), layers.distance * params.cell_m);
         pixel.forward += vec4f(color * rgb(layers.forward + (through - sharp) * spectrum(params.ambient)), 0.0);
         pixel.residual += vec4f(color * rgb(layers.residual), 0.0);
+        pixel.emission += vec4f(color * rgb(layers.emission), 0.0);
     }
     let share = 1.0 / f32(n * n);
     pixel.beauty *= share;
     pixel.single *= share;
     pixel.forward *= share;
     pixel.residual *= share;
+    pixel.emission *= share;
     // Mean distance of what is seen; 0 where nothing is.
     pixel.single.w = select(0.0, pixel.single.w / max(pixel.beauty.w, 1e-30), pixel.beauty.w > 1e-6);
     pixels[id.y * params.width + id.x] = pixel;

@@ -14,6 +14,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("points", &["true", "false"]),
     ("peak", &["true", "false"]),
     ("residual", &["true", "false"]),
+    ("emission", &["true", "false"]),
 ];
 
 /// All ways to fill in the names that the text asks for.

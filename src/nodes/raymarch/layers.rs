@@ -10,13 +10,14 @@ mirror! {
         single: [f32; 4],
         forward: [f32; 4],
         residual: [f32; 4],
+        emission: [f32; 4],
     }
 }
 
 impl Pixel {
     /// Whether all of its layers are.
     pub(super) fn is_finite(&self) -> bool {
-        [self.beauty, self.single, self.forward, self.residual]
+        [self.beauty, self.single, self.forward, self.residual, self.emission]
             .as_flattened()
             .iter()
             .all(|value| value.is_finite())
@@ -35,5 +36,6 @@ pub(super) fn image(width: usize, height: usize, pixels: &[Pixel]) -> Image {
     image.insert("single", 3, three(|p| p.single));
     image.insert("forward", 3, three(|p| p.forward));
     image.insert("residual", 3, three(|p| p.residual));
+    image.insert("emission", 3, three(|p| p.emission));
     image
 }

@@ -1,7 +1,7 @@
 //! `raymarch`: the picture (DESIGN 6.5).
 //!
 //! Along each view ray: exact single scattering of the beams, what their forward peak adds (the table K),
-//! the residual lobe, and what stands behind the medium. Pixels are computed in bands of rows, so that a
+//! the residual lobe, emission, and what stands behind the medium. Pixels are computed in bands of rows, so that a
 //! picture of any size fits and a cancel is heard.
 
 use glam::DMat3;
@@ -15,7 +15,7 @@ use crate::light::environment::Environment;
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::peak;
-use crate::wire::{Beams, Channels, Medium, Place, Residual, ShapeTexel};
+use crate::wire::{Beams, Channels, Emission, Heat, Medium, Place, Residual, ShapeTexel};
 
 mod layers;
 #[cfg(test)]
@@ -25,17 +25,17 @@ pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run }
 
 static SPEC: NodeSpec = NodeSpec {
     id: "raymarch",
-    version: 1,
+    version: 2,
     category: Category::Image,
     purpose: "Marches the camera's rays through the medium: the picture.",
     doc: "Layers: beauty, alpha (coverage), depth (mean distance of what is seen [m], 0 where nothing is), single (light scattered \
-          once), forward (light of the forward peak), residual (light scattered into all directions).",
+          once), forward (light of the forward peak), residual (light scattered into all directions), emission (of the medium itself).",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what is seen"),
         PortSpec::new(
             "beams",
             PortType::Beams,
-            "light from propagations; without it only the residual is seen",
+            "light from propagations; without it only residual and emission are seen",
         )
         .many()
         .optional(),
@@ -96,6 +96,7 @@ mirror! {
         pad_0: u32,
         pad_1: u32,
         pad_2: u32,
+        heat: Heat,
     }
 }
 
@@ -114,6 +115,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let backdrop = Backdrop::new(gpu, run.inputs.maybe("environment"), run.params.bool("background"))?;
 
     let channels = common_channels(Channels::of(medium, &beams), residual);
+    let emission = Emission::or_none(medium.emission.as_ref(), gpu)?;
     let params = params(run, medium, camera, &beams, residual, &backdrop, channels)?;
     let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
     let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
@@ -122,6 +124,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let moments = residual.map_or(&dark, |residual| &residual.moments);
     let table = peak_texture(gpu, medium.g)?;
     let (clamp, around) = (gpu.linear_sampler(), gpu.latlong_sampler());
+    let [flame, temperature, blackbodies] = emission.grids();
     let inputs = [
         Bind::Texture(&medium.sigma_t),
         Bind::Sampler(&clamp),
@@ -132,6 +135,9 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&backdrop.map),
         Bind::Sampler(&around),
         Bind::Texture(&medium.blocks),
+        flame,
+        temperature,
+        blackbodies,
     ];
 
     let stage = gpu.stage("raymarch", &choices(medium, &beams, residual, channels))?;
@@ -150,7 +156,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         let read = &read[..camera.width * n_rows];
         if let Some(idx) = read.iter().position(|pixel| !pixel.is_finite()) {
             return Err(NodeError::new(format!(
-                "pixel ({}, {}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity or radiance",
+                "pixel ({}, {}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity, radiance or emission_scale",
                 idx % camera.width,
                 row + idx / camera.width
             )));
@@ -168,7 +174,7 @@ fn choices(
     beams: &Beams,
     residual: Option<&Residual>,
     channels: Channels,
-) -> [(&'static str, String); 7] {
+) -> [(&'static str, String); 8] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
     let [pack, _] = beams.tau.choices();
     let n_beams = match beams.beams.len() {
@@ -181,6 +187,7 @@ fn choices(
         ("points", points.to_string()),
         ("peak", (medium.g > 0.0).to_string()),
         ("residual", residual.is_some().to_string()),
+        ("emission", medium.emission.is_some().to_string()),
         ("n_beams", n_beams),
         pack,
     ]
@@ -249,6 +256,7 @@ fn params(
         pad_0: 0,
         pad_1: 0,
         pad_2: 0,
+        heat: medium.emission.as_ref().map_or(bytemuck::Zeroable::zeroed(), |emission| emission.heat),
     })
 }
 

@@ -287,6 +287,7 @@ fn layouts_are_those_of_the_shader() {
             ("points", "true"),
             ("peak", "true"),
             ("residual", "true"),
+            ("emission", "true"),
             ("n_beams", "params.n_beams"),
         ];
         assert_layout::<MarchParams>("raymarch.wgsl", "MarchParams", &choices);
