@@ -1,5 +1,5 @@
-// A thread: the largest extinction that a sample in one block of cells can meet. A sample reads the cells
-// around it, so a block reaches one cell beyond its own on every side.
+// A thread: the largest extinction or emission that a sample in one block of cells can meet. A sample reads
+// the cells around it, so a block reaches one cell beyond its own on every side.
 
 #import "lib/block.wgsl"
 
@@ -10,7 +10,10 @@ struct OccupancyParams {
 
 @group(0) @binding(0) var<uniform> params: OccupancyParams;
 @group(1) @binding(0) var sigma_t: texture_3d<f32>;
+@group(1) @binding(1) var emission: texture_3d<f32>;
 @group(2) @binding(0) var blocks: texture_storage_3d<r32float, write>;
+
+const HAS_EMISSION: bool = {emission};
 
 @compute @workgroup_size(8, 8, 1)
 fn occupancy(@builtin(global_invocation_id) id: vec3u) {
@@ -25,6 +28,10 @@ fn occupancy(@builtin(global_invocation_id) id: vec3u) {
         for (var y = low.y; y <= high.y; y += 1) {
             for (var x = low.x; x <= high.x; x += 1) {
                 largest = max(largest, textureLoad(sigma_t, vec3i(x, y, z), 0).x);
+                if HAS_EMISSION {
+                    let glow = textureLoad(emission, vec3i(x, y, z), 0).xyz;
+                    largest = max(largest, max(glow.x, max(glow.y, glow.z)));
+                }
             }
         }
     }

@@ -10,17 +10,15 @@
 #import "lib/beam.wgsl"
 #import "lib/lobe.wgsl"
 #import "lib/transmittance.wgsl"
+#import "lib/emission.wgsl"
 #import "raymarch/channels_{channels}.wgsl"
+#import "lib/surface_light.wgsl"
 #import "lib/bvh.wgsl"
 #import "lib/shadow.wgsl"
 #import "raymarch/beams.wgsl"
 #import "raymarch/environment.wgsl"
 #import "raymarch/surface.wgsl"
-#import "lib/bvh.wgsl"
-#import "lib/shadow.wgsl"
-#import "raymarch/beams.wgsl"
-#import "raymarch/environment.wgsl"
-#import "raymarch/surface.wgsl"
+#import "raymarch/emission.wgsl"
 
 struct MarchParams {
     shape: Shape,
@@ -66,6 +64,7 @@ struct MarchParams {
     pad_2: u32,
     // Numbers of forward scatterings that the levels of the stack are for.
     stack_x: array<vec4f, 4>,
+    heat: Heat,
 }
 
 struct Pixel {
@@ -76,6 +75,7 @@ struct Pixel {
     forward: vec4f,
     residual: vec4f,
     surface: vec4f,
+    emission: vec4f,
 }
 
 @group(0) @binding(0) var<uniform> params: MarchParams;
@@ -91,6 +91,11 @@ struct Pixel {
 @group(1) @binding(9) var stack: texture_3d<f32>;
 @group(1) @binding(10) var<storage, read> surface_nodes: array<SurfaceNode>;
 @group(1) @binding(11) var<storage, read> surface_triangles: array<SurfaceTriangle>;
+@group(1) @binding(12) var flame: texture_3d<f32>;
+@group(1) @binding(13) var temperature: texture_3d<f32>;
+@group(1) @binding(14) var blackbodies: texture_2d<f32>;
+@group(1) @binding(15) var<storage, read> surface_light: array<vec4f>;
+@group(1) @binding(16) var<storage, read> surface_grids: array<vec2u>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Where less than this is left of a ray it ends.
@@ -110,7 +115,10 @@ const HAS_WINDOW: bool = {window};
 const HAS_RESIDUAL: bool = {residual};
 const HAS_STACK: bool = {stack};
 const HAS_SURFACES: bool = {surfaces};
+const HAS_GATHERED: bool = {gathered};
 const HAS_SHADOWS: bool = {shadows};
+const HAS_GATHERED: bool = {gathered};
+const HAS_EMISSION: bool = {emission};
 
 // A number where it is known when the shader is compiled: what is the same along the ray is then computed once.
 fn n_beams() -> u32 {
@@ -121,6 +129,7 @@ struct Layers {
     single: Spectrum,
     forward: Spectrum,
     residual: Spectrum,
+    emission: Spectrum,
     // Optical depth of the whole ray, unscaled.
     tau: f32,
     // Sum of distance times what is absorbed there [cells].
@@ -170,6 +179,9 @@ fn march(direction: vec3f, until: f32) -> Layers {
             if step_tau.x + step_tau.y > VOID {
                 break;
             }
+            if HAS_EMISSION {
+                layers.emission += through * length_m * (glow(params.eye + t.x * direction) + glow(far));
+            }
             n = max(n, floor((empty_until(blocks, params.eye, direction, far) - span.x) / (2.0 * dt) - 0.75));
         }
         if n >= n_pairs {
@@ -178,8 +190,10 @@ fn march(direction: vec3f, until: f32) -> Layers {
 
         let kept_near = exp(-k * step_tau.x);
         let kept_far = exp(-k * step_tau.y);
-        let near = through * step_tau.x * per_channel_mean(k * step_tau.x, kept_near);
-        let far = through * kept_near * step_tau.y * per_channel_mean(k * step_tau.y, kept_far);
+        let seen_near = through * per_channel_mean(k * step_tau.x, kept_near);
+        let seen_far = through * kept_near * per_channel_mean(k * step_tau.y, kept_far);
+        let near = seen_near * step_tau.x;
+        let far = seen_far * step_tau.y;
         let half_way = sharp * exp(-step_tau.x);
         let end = half_way * exp(-step_tau.y);
         let seen = vec2f(largest(near), largest(far)) / (largest(near) + largest(far));
@@ -192,6 +206,10 @@ fn march(direction: vec3f, until: f32) -> Layers {
         layers.forward += scattered.forward;
         if HAS_RESIDUAL {
             layers.residual += segment.reach * scatter * residual_of(p, direction);
+        }
+        if HAS_EMISSION {
+            let lights = seen_near * glow(params.eye + t.x * direction) + seen_far * glow(params.eye + t.y * direction);
+            layers.emission += length_m * lights;
         }
         layers.distance += dot(vec2f(sharp - half_way, half_way - end), t);
         layers.tau += step_tau.x + step_tau.y;
@@ -244,9 +262,11 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
         }
         let single = color * rgb(layers.single);
         let residual = color * rgb(layers.residual);
-        pixel.beauty += vec4f(single + residual, 1.0 - behind);
+        let emission = color * rgb(layers.emission);
+        pixel.beauty += vec4f(single + residual + emission, 1.0 - behind);
         pixel.single += vec4f(single, distance * params.cell_m);
         pixel.residual += vec4f(residual, 0.0);
+        pixel.emission += vec4f(emission, 0.0);
     }
     let share = 1.0 / f32(n * n);
     pixel.beauty *= share;
@@ -254,6 +274,7 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
     pixel.forward *= share;
     pixel.residual *= share;
     pixel.surface *= share;
+    pixel.emission *= share;
     // Mean distance of what is seen; 0 where nothing is.
     pixel.single.w = select(0.0, pixel.single.w / max(pixel.beauty.w, 1e-30), pixel.beauty.w > 1e-6);
     pixels[id.y * params.width + id.x] = pixel;

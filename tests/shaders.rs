@@ -23,6 +23,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("shadows", SWITCH),
     ("gathered", SWITCH),
     ("narrow", SWITCH),
+    ("emission", SWITCH),
 ];
 
 /// Ways to fill in the names that the text asks for: all products of those with many values; of those that are

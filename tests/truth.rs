@@ -20,6 +20,7 @@ const SCENES: &[(&str, f64)] = &[
     ("s08_cloud128_rgb_const", 0.008),
     ("s12_plume_dir", 0.022),
     ("s13_plume_point", 0.030),
+    ("s15_fire_mixed", 0.027),
 ];
 
 fn render(graph: &Path) -> Option<Image> {

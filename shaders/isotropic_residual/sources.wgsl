@@ -1,7 +1,8 @@
-// A thread: what the beams give to one cell and channel, Q0 and Q1 [W/m3] (DESIGN 6.3).
+// A thread: what beams and emission give to one cell and channel, Q0 and Q1 [W/m3] (DESIGN 6.3).
 
 #import "isotropic_residual/common.wgsl"
 #import "lib/beam.wgsl"
+#import "lib/phase.wgsl"
 #import "lib/shadow.wgsl"
 #import "lib/transmittance.wgsl"
 
@@ -17,7 +18,10 @@ struct SourceParams {
 @group(1) @binding(0) var sigma_t: texture_3d<f32>;
 @group(1) @binding(1) var tau: texture_3d<f32>;
 @group(1) @binding(2) var<storage, read> beams: array<Beam>;
+@group(1) @binding(3) var emission: texture_3d<f32>;
 @group(2) @binding(0) var sources: texture_storage_3d<rgba32float, write>;
+
+const HAS_EMISSION: bool = {emission};
 
 // -ln of the mean of exp(-t) for t from a to b.
 fn depth_between(a: f32, b: f32) -> f32 {
@@ -117,5 +121,11 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
             }
         }
     }
-    textureStore(sources, id, extinction * channel.scatter * total);
+    total *= extinction * channel.scatter;
+    if HAS_EMISSION {
+        // Into all directions alike, in void too.
+        let eps = textureLoad(emission, cell, 0);
+        total.x += FOUR_PI * eps[c];
+    }
+    textureStore(sources, id, total);
 }

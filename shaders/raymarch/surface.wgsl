@@ -25,7 +25,16 @@ fn surface_radiance(triangle: u32, p: vec3f, direction: vec3f) -> vec3f {
     let normal = surface_normal(triangle, direction);
     var irradiance = Spectrum(0.0);
     for (var n = 0u; n < n_beams(); n += 1u) {
-        irradiance += irradiance_of(beams[n], p, normal);
+        // The others' light is in what the residual has gathered.
+        if !HAS_GATHERED || is_narrow(beams[n]) {
+            irradiance += irradiance_of(beams[n], p, normal);
+        }
     }
-    return surface_reflectance(triangle) / PI * params.color.xyz * rgb(irradiance);
+    var arriving = params.color.xyz * rgb(irradiance);
+    if HAS_GATHERED {
+        let gathered = surface_irradiance(triangle, p, direction);
+        let channels = select(gathered, gathered.xxx, params.residual_channels == 1u);
+        arriving += params.color.xyz * params.residual_color.xyz * channels;
+    }
+    return surface_reflectance(triangle) / PI * arriving;
 }

@@ -138,7 +138,7 @@ impl Scene {
         let cells: Vec<f32> = self.sigma_t.data.iter().map(|value| *value as f32).collect();
         let sigma_t = gpu.texture3_from("extinction", self.sigma_t.dims, Format::R32Float, &cells, "");
         let sigma_t = sigma_t.expect("extinction");
-        let blocks = occupancy(gpu, &sigma_t).expect("blocks");
+        let blocks = occupancy(gpu, &sigma_t, None).expect("blocks");
         let medium = Medium {
             blocks: Arc::new(blocks),
             lattice: self.lattice(),
@@ -146,6 +146,7 @@ impl Scene {
             sigma_t_max: self.sigma_t.data.iter().copied().fold(0.0, f64::max),
             albedo: self.albedo,
             g: self.g,
+            emission: None,
             homogeneous: None,
         };
         Value::new(PortType::Medium, 0, medium)

@@ -6,7 +6,7 @@
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex};
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, IVec3};
 
 use super::Dense;
 use super::vdb;
@@ -14,9 +14,19 @@ use super::vdb;
 /// Named grids.
 pub struct Volume {
     source: Source,
-    decoded: Mutex<HashMap<String, Arc<Dense>>>,
+    decoded: Mutex<HashMap<String, Decoded>>,
     /// After the volume's own map.
     transform: DMat4,
+}
+
+/// A grid of a file as voxels.
+#[derive(Clone)]
+struct Decoded {
+    dense: Arc<Dense>,
+    /// What stands outside of the voxels.
+    background: f32,
+    /// The first voxel.
+    min: IVec3,
 }
 
 enum Source {
@@ -61,6 +71,14 @@ pub enum VolumeError {
         value: f32,
         /// Where, in index coordinates.
         at: [i32; 3],
+    },
+    /// No temperature either.
+    #[error("grid '{name}' holds {value:?}, but every value is finite: clean the grid")]
+    NotFinite {
+        /// The grid.
+        name: String,
+        /// What was found.
+        value: f32,
     },
     /// Fog fills all of space.
     #[error("grid '{name}' has the background {background:?}: a medium needs 0 outside of its active voxels")]
@@ -110,38 +128,66 @@ impl Volume {
         let of = |dense: &Dense| size_of_val(dense.values.as_slice()) as u64;
         match &self.source {
             Source::Shape { dense, .. } => of(dense),
-            Source::File(_) => self.decoded.lock().unwrap().values().map(|dense| of(dense)).sum(),
+            Source::File(_) => self.decoded.lock().unwrap().values().map(|decoded| of(&decoded.dense)).sum(),
         }
     }
 
-    /// The voxels of a grid in its active box; every value finite and at least 0.
+    /// The voxels of a grid in its active box; every value finite and at least 0, and 0 outside.
     ///
     /// # Errors
     /// [`VolumeError`] names the grid and what to do.
     pub fn grid(&self, name: &str) -> Result<Arc<Dense>, VolumeError> {
+        let Decoded { dense, background, min } = self.decoded(name)?;
+        if background != 0.0 {
+            return Err(VolumeError::Background { name: name.to_owned(), background });
+        }
+        if let Some(idx) = dense.values.iter().position(|value| !(value.is_finite() && *value >= 0.0)) {
+            let [nx, ny, _] = dense.dims;
+            let at = [idx % nx, idx / nx % ny, idx / (nx * ny)];
+            let at = std::array::from_fn(|axis| min[axis] + at[axis] as i32);
+            return Err(VolumeError::Value { name: name.to_owned(), value: dense.values[idx], at });
+        }
+        Ok(dense)
+    }
+
+    /// The voxels of a grid of any finite values in its active box, and the value outside.
+    ///
+    /// # Errors
+    /// [`VolumeError`] names the grid and what to do.
+    pub fn signed_grid(&self, name: &str) -> Result<(Arc<Dense>, f32), VolumeError> {
+        let Decoded { dense, background, .. } = self.decoded(name)?;
+        let odd = dense.values.iter().chain([&background]).copied().find(|value| !value.is_finite());
+        match odd {
+            Some(value) => Err(VolumeError::NotFinite { name: name.to_owned(), value }),
+            None => Ok((dense, background)),
+        }
+    }
+
+    fn decoded(&self, name: &str) -> Result<Decoded, VolumeError> {
         match &self.source {
-            Source::Shape { dense, .. } if name == "density" => Ok(Arc::clone(dense)),
+            Source::Shape { dense, .. } if name == "density" => {
+                Ok(Decoded { dense: Arc::clone(dense), background: 0.0, min: IVec3::ZERO })
+            }
             Source::Shape { .. } => Err(VolumeError::NoGrid(name.to_owned())),
             Source::File(file) => {
-                let mut decoded = self.decoded.lock().unwrap();
-                if let Some(dense) = decoded.get(name) {
-                    return Ok(Arc::clone(dense));
+                let mut known = self.decoded.lock().unwrap();
+                if let Some(decoded) = known.get(name) {
+                    return Ok(decoded.clone());
                 }
-                let dense = Arc::new(self.decode(file, name)?);
-                decoded.insert(name.to_owned(), Arc::clone(&dense));
-                Ok(dense)
+                let decoded = self.decode(file, name)?;
+                known.insert(name.to_owned(), decoded.clone());
+                Ok(decoded)
             }
         }
     }
 
-    fn decode(&self, file: &vdb::File, name: &str) -> Result<Dense, VolumeError> {
+    fn decode(&self, file: &vdb::File, name: &str) -> Result<Decoded, VolumeError> {
         let grid = file.read(name)?;
-        if grid.background != 0.0 {
-            return Err(VolumeError::Background { name: name.to_owned(), background: grid.background });
-        }
+        let background = grid.background;
         let world_from_index = self.transform * grid.world_from_index;
         let Some((min, max)) = grid.active_bbox() else {
-            return Ok(Dense { dims: [1; 3], values: vec![0.0], world_from_index });
+            let dense = Arc::new(Dense { dims: [1; 3], values: vec![background], world_from_index });
+            return Ok(Decoded { dense, background, min: IVec3::ZERO });
         };
         let size: [u64; 3] =
             std::array::from_fn(|axis| (i64::from(max[axis]) - i64::from(min[axis]) + 1) as u64);
@@ -150,12 +196,7 @@ impl Volume {
         }
         let dims = size.map(|n| n as usize);
         let values = grid.dense(min, dims);
-        if let Some(idx) = values.iter().position(|value| !(value.is_finite() && *value >= 0.0)) {
-            let at = [idx % dims[0], idx / dims[0] % dims[1], idx / (dims[0] * dims[1])];
-            let at = std::array::from_fn(|axis| min[axis] + at[axis] as i32);
-            return Err(VolumeError::Value { name: name.to_owned(), value: values[idx], at });
-        }
         let world_from_index = world_from_index * DMat4::from_translation(min.as_dvec3());
-        Ok(Dense { dims, values, world_from_index })
+        Ok(Decoded { dense: Arc::new(Dense { dims, values, world_from_index }), background, min })
     }
 }

@@ -1,5 +1,5 @@
 //! How many channels a scene needs (DESIGN 7): one where the medium is grey and all light has one
-//! chromaticity, three otherwise.
+//! chromaticity, three otherwise. Flames of several temperatures have several.
 
 use super::{Beams, Medium};
 use crate::light::chromaticity;
@@ -22,6 +22,9 @@ impl Channels {
 
     /// What this medium in this light needs.
     pub fn of(medium: &Medium, beams: &Beams) -> Self {
+        if medium.emission.is_some() {
+            return Self::RGB;
+        }
         let mut powers =
             beams.beams.iter().map(|beam| beam.power).chain([beams.ambient]).filter_map(chromaticity);
         let Some((_, color)) = powers.next() else {

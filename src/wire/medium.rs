@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::Emission;
 use crate::gpu::{Bind, Format, Gpu, GpuError, Texture};
 use crate::mirror;
 use crate::volume::Lattice;
@@ -15,7 +16,7 @@ pub struct Medium {
     pub lattice: Lattice,
     /// sigma_t [1/m] at the centers of cells; one R32Float texel a cell, void on the border.
     pub sigma_t: Arc<Texture>,
-    /// The largest sigma_t that a sample in a block of 8³ cells can meet [1/m]; one R32Float texel a block.
+    /// Above 0 where a sample in a block of 8³ cells can meet matter or glow; one R32Float texel a block.
     pub blocks: Arc<Texture>,
     /// The largest sigma_t [1/m].
     pub sigma_t_max: f64,
@@ -23,6 +24,8 @@ pub struct Medium {
     pub albedo: [f64; 3],
     /// Mean cosine of the phase function.
     pub g: f64,
+    /// Set where it glows.
+    pub emission: Option<Emission>,
     /// Set where the medium is one shape of one density, whose boundary is then exact.
     pub homogeneous: Option<Homogeneous>,
 }
@@ -65,19 +68,20 @@ mirror! {
 /// Edge of a block in cells.
 const BLOCK: usize = 8;
 
-/// What each block of cells holds at most, so that rays pass empty ones in one step.
+/// Which blocks of cells hold something, so that rays pass empty ones in one step.
 ///
 /// # Errors
 /// What the device reports.
-pub fn occupancy(gpu: &Gpu, sigma_t: &Texture) -> Result<Texture, GpuError> {
+pub fn occupancy(gpu: &Gpu, sigma_t: &Texture, emission: Option<&Emission>) -> Result<Texture, GpuError> {
     let n_blocks = sigma_t.dims().map(|n| (n as usize).div_ceil(BLOCK));
     let blocks =
         gpu.texture3("blocks of cells", n_blocks, Format::R32Float, "lower medium.max_resolution")?;
     let params = OccupancyParams { n_blocks: n_blocks.map(|n| n as u32), pad: 0 };
-    let stage = gpu.stage("occupancy", &[])?;
+    let stage = gpu.stage("occupancy", &[("emission", emission.is_some().to_string())])?;
+    let glow = Emission::or_none(emission, gpu)?;
+    let inputs = [Bind::Texture(sigma_t), Bind::Texture(&glow.cells)];
     let mut recorder = gpu.recorder("occupancy");
-    recorder
-        .dispatch(&stage.bind(gpu, &params, &[Bind::Texture(sigma_t)], &[Bind::Texture(&blocks)]), n_blocks);
+    recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&blocks)]), n_blocks);
     recorder.finish()?;
     Ok(blocks)
 }
@@ -119,7 +123,7 @@ mod tests {
 
     #[test]
     fn blocks_are_as_large_in_the_shaders() {
-        let shader = Shader::expand("occupancy.wgsl", &[]).unwrap();
+        let shader = Shader::expand("occupancy.wgsl", &[("emission", "true".to_owned())]).unwrap();
         assert_eq!(wgsl_constant(&shader, "BLOCK").unwrap(), BLOCK as i64);
     }
 }

@@ -7,6 +7,7 @@
 
 mod beams;
 mod channels;
+mod emission;
 mod importance;
 mod medium;
 mod residual;
@@ -15,6 +16,7 @@ mod surfaces;
 
 pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
 pub use channels::Channels;
+pub use emission::{Emission, Heat};
 pub use importance::Importance;
 pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;

@@ -6,6 +6,8 @@
 //! positive and conservative. A cascade of grids, from 8 cells up, carries the coarse solution to the
 //! fine one; after each sweep one factor a channel restores the balance of power.
 //!
+//! Emission is a source like what beams lose, of all directions alike.
+//!
 //! Inputs: a medium and its beams. Output: phi and F [W/m²] a cell and channel. Held against the f64
 //! oracle beside it, the slabs of adding–doubling, and the invariants of DESIGN 8.
 
@@ -30,12 +32,12 @@ static SPEC: NodeSpec = NodeSpec {
     version: 1,
     category: Category::Transport,
     purpose: "Multiple scattering: light that has lost its direction, as one lobe a cell.",
-    doc: "Solves for all light that has been scattered out of the beams, by sweeps along lines of the grid from coarse to fine. \
+    doc: "Solves for all light that has been scattered out of the beams or is emitted, by sweeps along lines of the grid from coarse to fine. \
           One channel where the medium is grey and all light has one color, three otherwise. Surfaces are lit by beams, by the \
           medium and by each other, and send light back, twice; they do not block the lines of the sweeps.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "where the light scatters"),
-        PortSpec::new("beams", PortType::Beams, "the light that enters; without it, nothing scatters").many().optional(),
+        PortSpec::new("beams", PortType::Beams, "the light that enters; without it, only what the medium emits").many().optional(),
         PortSpec::new("surfaces", PortType::Surface, "what sends light back into the medium").many().optional(),
     ],
     outputs: &[PortSpec::new("residual", PortType::Residual, "the scattered light, for raymarch")],

@@ -1,11 +1,11 @@
-//! The sources of the residual: what beams lose to scattering in each cell (DESIGN 6.3).
+//! The sources of the residual: what beams lose to scattering in each cell, and emission (DESIGN 6.3).
 
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
 use crate::gpu::{Bind, Buffer, Format, Gpu, GpuError, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
-use crate::wire::{Beams, Channels, Medium};
+use crate::wire::{Beams, Channels, Emission, Medium};
 
 mirror! {
     /// `SourceParams` of `sources.wgsl`.
@@ -46,8 +46,16 @@ pub(super) fn sources(
         pad_1: 0,
     };
     let mut recorder = gpu.recorder("sources");
-    let inputs = [Bind::Texture(&medium.sigma_t), Bind::Texture(&beams.tau.texture), Bind::Buffer(&list)];
-    let stage = gpu.stage("isotropic_residual/sources", &beams.tau.choices())?;
+    let glow = Emission::or_none(medium.emission.as_ref(), gpu)?;
+    let inputs = [
+        Bind::Texture(&medium.sigma_t),
+        Bind::Texture(&beams.tau.texture),
+        Bind::Buffer(&list),
+        Bind::Texture(&glow.cells),
+    ];
+    let [pack, format] = beams.tau.choices();
+    let choices = [pack, format, ("emission", medium.emission.is_some().to_string())];
+    let stage = gpu.stage("isotropic_residual/sources", &choices)?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
     run.finish(recorder)?;
     with_sums(run, problem, &level, field)

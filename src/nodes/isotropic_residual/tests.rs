@@ -393,7 +393,11 @@ fn layouts_are_those_of_the_shaders() {
     assert_layout::<DirectionTexel>("isotropic_residual/sweep.wgsl", "Direction", &[]);
     assert_layout::<BatchParams>("isotropic_residual/sweep.wgsl", "Batch", &[]);
     assert_layout::<BalanceParams>("isotropic_residual/balance.wgsl", "BalanceParams", &[]);
-    assert_layout::<SourceParams>("isotropic_residual/sources.wgsl", "SourceParams", &[("pack", "4")]);
+    assert_layout::<SourceParams>(
+        "isotropic_residual/sources.wgsl",
+        "SourceParams",
+        &[("pack", "4"), ("emission", "true")],
+    );
     let format = [("format", "r32float")];
     assert_layout::<solver::RestrictParams>("isotropic_residual/restrict.wgsl", "RestrictParams", &format);
 }

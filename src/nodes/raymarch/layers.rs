@@ -11,13 +11,14 @@ mirror! {
         forward: [f32; 4],
         residual: [f32; 4],
         surface: [f32; 4],
+        emission: [f32; 4],
     }
 }
 
 impl Pixel {
     /// Whether all of its layers are.
     pub(super) fn is_finite(&self) -> bool {
-        [self.beauty, self.single, self.forward, self.residual, self.surface]
+        [self.beauty, self.single, self.forward, self.residual, self.surface, self.emission]
             .as_flattened()
             .iter()
             .all(|value| value.is_finite())
@@ -37,5 +38,6 @@ pub(super) fn image(width: usize, height: usize, pixels: &[Pixel]) -> Image {
     image.insert("forward", 3, three(|p| p.forward));
     image.insert("residual", 3, three(|p| p.residual));
     image.insert("surface", 3, three(|p| p.surface));
+    image.insert("emission", 3, three(|p| p.emission));
     image
 }

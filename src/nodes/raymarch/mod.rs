@@ -1,7 +1,7 @@
 //! `raymarch`: the picture (DESIGN 6.5).
 //!
 //! Along each view ray: exact single scattering of the beams, what their forward peak adds (the table K),
-//! the residual lobe, and what stands behind the medium. Pixels are computed in bands of rows, so that a
+//! the residual lobe, emission, and what stands behind the medium. Pixels are computed in bands of rows, so that a
 //! picture of any size fits and a cancel is heard.
 
 use glam::DMat3;
@@ -17,7 +17,9 @@ use crate::light::environment::STACK_X;
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::peak;
-use crate::wire::{Beams, Channels, Medium, Place, Residual, ShapeTexel, Surfaces};
+use crate::wire::{
+    Beams, Channels, Emission, Heat, Medium, Place, Residual, ShapeTexel, SurfaceLight, Surfaces,
+};
 
 mod backdrop;
 mod layers;
@@ -28,18 +30,18 @@ pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run }
 
 static SPEC: NodeSpec = NodeSpec {
     id: "raymarch",
-    version: 1,
+    version: 2,
     category: Category::Image,
     purpose: "Marches the camera's rays through the medium: the picture.",
     doc: "Layers: beauty, alpha (coverage), depth (mean distance of what is seen [m], 0 where nothing is), single (light scattered \
-          once), forward (light of the forward peak), residual (light scattered into all directions), \
-          surface (light of meshes).",
+          once), forward (light of the forward peak), residual (light scattered into all directions), emission (of the medium \
+          itself), surface (light of meshes).",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what is seen"),
         PortSpec::new(
             "beams",
             PortType::Beams,
-            "light from propagations; without it only the residual is seen",
+            "light from propagations; without it only residual and emission are seen",
         )
         .many()
         .optional(),
@@ -104,6 +106,7 @@ mirror! {
         pad_1: u32,
         pad_2: u32,
         stack_x: [[f32; 4]; 4],
+        heat: Heat,
     }
 }
 
@@ -121,9 +124,16 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     }
     let surfaces = Surfaces::new(gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
     let [nodes, triangles] = surfaces.binds();
+    let gathered = residual.and_then(|residual| residual.surface_light.as_deref());
+    if gathered.is_some_and(|light| !light.is_of(&surfaces)) {
+        return Err(NodeError::new(
+            "the residual knows other surfaces: wire the same to its surfaces, in the same order",
+        ));
+    }
     let backdrop = Backdrop::new(gpu, run.inputs.maybe("environment"), run.params.bool("background"))?;
 
     let channels = common_channels(Channels::of(medium, &beams), residual);
+    let emission = Emission::or_none(medium.emission.as_ref(), gpu)?;
     let params = params(run, medium, camera, &beams, residual, &backdrop, channels)?;
     let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
     let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
@@ -132,6 +142,9 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let moments = residual.map_or(&dark, |residual| &residual.moments);
     let table = peak_texture(gpu, medium.g)?;
     let (clamp, around) = (gpu.linear_sampler(), gpu.latlong_sampler());
+    let [flame, temperature, blackbodies] = emission.grids();
+    let nothing = gpu.buffer_from("no light on surfaces", &[[0.0_f32; 4]; 2], "")?;
+    let [light, grids] = gathered.map_or([Bind::Buffer(&nothing); 2], SurfaceLight::binds);
     let inputs = [
         Bind::Texture(&medium.sigma_t),
         Bind::Sampler(&clamp),
@@ -145,6 +158,11 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&backdrop.stack),
         nodes,
         triangles,
+        flame,
+        temperature,
+        blackbodies,
+        light,
+        grids,
     ];
 
     let stage = gpu.stage("raymarch", &choices(medium, &beams, residual, &backdrop, &surfaces, channels))?;
@@ -164,7 +182,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         let read = &read[..camera.width * n_rows];
         if let Some(idx) = read.iter().position(|pixel| !pixel.is_finite()) {
             return Err(NodeError::new(format!(
-                "pixel ({}, {}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity or radiance",
+                "pixel ({}, {}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity, radiance or emission_scale",
                 idx % camera.width,
                 row + idx / camera.width
             )));
@@ -184,9 +202,10 @@ fn choices(
     backdrop: &Backdrop,
     surfaces: &Surfaces,
     channels: Channels,
-) -> [(&'static str, String); 11] {
+) -> [(&'static str, String); 13] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
     let window = beams.beams.iter().any(|beam| beam.window.is_some());
+    let gathered = residual.and_then(|residual| residual.surface_light.as_ref());
     let [pack, _] = beams.tau.choices();
     let n_beams = match beams.beams.len() {
         n @ ..=4 => format!("{n}u"),
@@ -202,6 +221,8 @@ fn choices(
         ("stack", backdrop.has_stack.to_string()),
         ("surfaces", (!surfaces.is_empty()).to_string()),
         ("shadows", beams.has_shadows.to_string()),
+        ("gathered", gathered.is_some().to_string()),
+        ("emission", medium.emission.is_some().to_string()),
         ("n_beams", n_beams),
         pack,
     ]
@@ -271,6 +292,7 @@ fn params(
         pad_1: 0,
         pad_2: 0,
         stack_x: std::array::from_fn(|row| std::array::from_fn(|n| STACK_X[4 * row + n] as f32)),
+        heat: medium.emission.as_ref().map_or(bytemuck::Zeroable::zeroed(), |emission| emission.heat),
     })
 }
 

@@ -390,6 +390,8 @@ fn layouts_are_those_of_the_shader() {
             ("stack", "true"),
             ("surfaces", "true"),
             ("shadows", "true"),
+            ("gathered", "true"),
+            ("emission", "true"),
             ("n_beams", "params.n_beams"),
         ];
         assert_layout::<MarchParams>("raymarch.wgsl", "MarchParams", &choices);
