@@ -117,7 +117,6 @@ const HAS_STACK: bool = {stack};
 const HAS_SURFACES: bool = {surfaces};
 const HAS_GATHERED: bool = {gathered};
 const HAS_SHADOWS: bool = {shadows};
-const HAS_GATHERED: bool = {gathered};
 const HAS_EMISSION: bool = {emission};
 
 // A number where it is known when the shader is compiled: what is the same along the ray is then computed once.
