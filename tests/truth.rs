@@ -12,7 +12,7 @@ use tyndall::graph::{CancelToken, Document, Target, check};
 use tyndall::image::{self, Image, metrics};
 use tyndall::nodes;
 
-/// Scene and the prototype's error.
+/// Scene and the prototype's error; without one, 4 % and the noise of the truth, less a point.
 const SCENES: &[(&str, f64)] = &[
     ("s01_sphere_iso_dir", 0.005),
     ("s05_checker_dir", 0.021),
@@ -21,6 +21,7 @@ const SCENES: &[(&str, f64)] = &[
     ("s12_plume_dir", 0.022),
     ("s13_plume_point", 0.030),
     ("s15_fire_mixed", 0.027),
+    ("s16_cloud128_mesh_sky", 0.0355),
 ];
 
 fn render(graph: &Path) -> Option<Image> {
@@ -42,7 +43,9 @@ fn is_within(folder: &Path, scene: &str, limit: f64) -> bool {
     let Some(picture) = render(&file(".graph.json")) else { return true };
     let reference = image::read(&file(".exr")).unwrap();
     let mask = image::read(&file("_tau.exr")).unwrap();
-    let found = metrics::compare(&picture, &reference, Some(&mask)).unwrap();
+    // Where there are surfaces all of the picture counts.
+    let has_surfaces = std::fs::read_to_string(file(".graph.json")).unwrap().contains("\"mesh\"");
+    let found = metrics::compare(&picture, &reference, (!has_surfaces).then_some(&mask)).unwrap();
     let channels: Vec<String> =
         found.per_channel.iter().map(|c| format!("{:.4} ({:+.4})", c.block_relative, c.bias)).collect();
     eprintln!(

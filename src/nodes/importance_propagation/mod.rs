@@ -35,7 +35,7 @@ static SPEC: NodeSpec = NodeSpec {
         PortSpec::new("camera", PortType::Camera, "the view"),
     ],
     outputs: &[PortSpec::new("importance", PortType::Importance, "for light_decomposition.importance")],
-    params: &[ParamSpec::float("strength", 0.75).between(0.0, 1.0).doc(
+    params: &[ParamSpec::float("strength", 0.5).between(0.0, 1.0).doc(
         "Share of the importance that is about the view; the rest is the same for all directions. 0: light alone decides.",
     )],
 };
