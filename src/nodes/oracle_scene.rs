@@ -11,9 +11,10 @@ pub mod corners;
 
 use std::f64::consts::PI;
 
-use glam::{DVec3, DVec4};
+use glam::{DMat4, DVec3, DVec4};
 
 use crate::light::Window;
+use crate::optics::blackbody::blackbody_rgb;
 use crate::optics::delta::DeltaScaled;
 use crate::volume::field::Field;
 
@@ -93,6 +94,38 @@ pub struct OracleBeam {
     pub tau_corners: Field<f64>,
     /// What of its forward light the environment's stack carries instead.
     pub window: Option<Window>,
+}
+
+/// One channel of what glowing gas emits: its grids at their own voxels, trilinear, the black body after
+/// that.
+#[derive(Clone, Debug)]
+pub struct OracleEmission {
+    /// emission_scale · flame, 0 outside.
+    pub flame: Field<f64>,
+    /// From index space to the flame's voxels.
+    pub flame_from_index: DMat4,
+    /// T above what it is outside [K].
+    pub kelvin_above: Field<f64>,
+    /// T outside [K].
+    pub kelvin_outside: f64,
+    /// From index space to the temperature's voxels.
+    pub kelvin_from_index: DMat4,
+    /// Where luminance is 1.
+    pub reference_kelvin: f64,
+    /// Of linear Rec. 709.
+    pub channel: usize,
+}
+
+impl OracleEmission {
+    /// Emitted radiance per meter [W/(m³ sr)] at an index position.
+    pub fn at(&self, p: DVec3) -> f64 {
+        let flame = self.flame.trilinear_zero(self.flame_from_index.transform_point3(p));
+        if flame == 0.0 {
+            return 0.0;
+        }
+        let above = self.kelvin_above.trilinear_zero(self.kelvin_from_index.transform_point3(p));
+        flame * blackbody_rgb(self.kelvin_outside + above, self.reference_kelvin)[self.channel]
+    }
 }
 
 /// The state (phi, F) of a constant radiance from everywhere.

@@ -23,6 +23,10 @@ use crate::volume::Lattice;
 use crate::volume::field::Field;
 use crate::wire::{Beam, Beams, Medium, Place, Residual, occupancy};
 
+mod fire;
+
+pub use fire::{Fire, volume};
+
 /// A tolerance for what was made with filtered textures: software drivers weigh in f32, others with
 /// 8 bits, an error of half a step of 1/256 of the difference of two neighbors.
 pub fn filtered(gpu: &Gpu, f32_tolerance: f64) -> f64 {

@@ -11,8 +11,8 @@ use crate::nodes::oracle_scene::corners::HIDDEN;
 use crate::nodes::principal_propagation::oracle::mean_irradiance;
 use crate::nodes::spherical_propagation::oracle::mean_irradiance_point;
 use crate::nodes::testing::{
-    Filling, Scene, assert_close, assert_layout, flat, gpu, largest, layers, oracle_light, output, point,
-    run, states, sun, taus, with_run,
+    Filling, Fire, Scene, assert_close, assert_layout, filtered, flat, gpu, largest, layers, oracle_light,
+    output, point, run, states, sun, taus, with_run,
 };
 use crate::optics::directions::LineSet;
 use crate::volume::field::Field;
@@ -249,6 +249,37 @@ fn point_lights_light_the_residual() {
     let lights = [point(DVec3::new(20.0, 4.0, -3.0), 50.0), point(DVec3::new(3.0, -9.0, 8.0), 20.0)];
     let default = (Quality::Default, LineSet::Lines14);
     assert_solved(gpu, "points", &scene, (&lights, [0.0; 3]), default);
+}
+
+#[test]
+fn a_fire_gives_each_cell_the_mean_of_its_points() {
+    let Some(gpu) = gpu() else { return };
+    let fire = Fire::new(Scene::new([16; 3], Filling::Random, 3.0));
+    let medium = fire.medium(gpu);
+    for lights in [vec![], suns(true)] {
+        let beams = fire.scene.propagate(gpu, &medium, &lights, [0.0; 3]);
+        let taus = taus(gpu, beams.get());
+        let found = gpu_sources(gpu, &medium, &beams);
+        assert_eq!(found.len(), 3);
+        for (channel, found) in found.iter().enumerate() {
+            let emission = fire.oracle(channel);
+            let mut expected = oracle_sources(&fire.scene, channel, beams.get(), &taus);
+            expected.add_emission(&Field::from_fn([48; 3], |point| {
+                emission.at(DVec3::from_array(point.map(|n| (n as f64 - 1.0) / 3.0)))
+            }));
+            let q0: Vec<f64> = found.data.iter().map(|q| q.x).collect();
+            let top = largest(&expected.q0.data);
+            // The table of black bodies is 1e-4 off; blue, which sets in at 1900 K, 1e-4 of red.
+            let tolerance = filtered(gpu, if channel == 2 { 6e-4 } else { 1.5e-4 });
+            assert_close(
+                &format!("channel {channel}"),
+                &q0,
+                &expected.q0.data,
+                tolerance,
+                1e-2 * tolerance * top,
+            );
+        }
+    }
 }
 
 #[test]

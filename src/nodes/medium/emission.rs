@@ -180,3 +180,6 @@ fn texture_from_index(grid: &Dense, lattice: &Lattice) -> [[f32; 4]; 3] {
     let rows = map.transpose();
     [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.as_vec4().to_array())
 }
+
+#[cfg(test)]
+mod tests;

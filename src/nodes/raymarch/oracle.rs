@@ -11,8 +11,8 @@
 //! a constant ambient radiance: e^{−tau} of it is seen sharp, the rest was scattered forward.
 //!
 //! In: index space as in `oracle_scene.rs`; sigma_t trilinear, zero outside; tau of the light
-//! trilinear between corners; the residual trilinear between centers; emission on the cells or on a
-//! grid finer by a whole number, trilinear, zero outside. Out: radiance by layers [W/(m² sr)].
+//! trilinear between corners; the residual trilinear between centers; emission at the grids' own
+//! voxels. Out: radiance by layers [W/(m² sr)].
 //! Limits: one table of K for all spreads a0; no environment stack; near a point light r⁻²
 //! is that of the pair. Tested with closed forms; as a chain in `oracle_scene/tests.rs`.
 
@@ -21,7 +21,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, DVec4};
 
 use crate::light::Window;
-use crate::nodes::oracle_scene::{BeamLight, OracleBeam, OracleMedium};
+use crate::nodes::oracle_scene::{BeamLight, OracleBeam, OracleEmission, OracleMedium};
 use crate::optics::lobe::SquaredLinearLobe;
 use crate::optics::peak;
 use crate::optics::phase::hg;
@@ -37,8 +37,8 @@ pub struct MarchScene<'a> {
     pub beams: &'a [OracleBeam],
     /// (phi, F) at the cells.
     pub residual: &'a Field<DVec4>,
-    /// Emitted radiance per meter [W/(m³ sr)].
-    pub emission: Option<&'a Field<f64>>,
+    /// What it emits.
+    pub emission: Option<&'a OracleEmission>,
     /// Constant radiance behind the medium.
     pub ambient: f64,
     /// `peak_table(g)` of the medium's g.
@@ -121,7 +121,7 @@ pub fn march_through(
                 let depth = sigma_t * step_m;
                 let seen_m = (-scaled.k * seen.tau).exp() * mean_transmittance(scaled.k * depth) * step_m;
                 if let Some(emission) = scene.emission {
-                    seen.emission += seen_m * emission_at(scene.medium, emission, p);
+                    seen.emission += seen_m * emission.at(p);
                 }
                 let reach = |k: f64| (-k * seen.tau).exp() * mean_transmittance(k * depth) * depth;
                 segment.sharp += reach(1.0);
@@ -212,12 +212,6 @@ fn inverse_square(r_m: f64, length_m: f64) -> f64 {
 
 /// Radius of the ball that has the volume of a cube, over the cube's edge: (3/4π)^{1/3}.
 const BALL_RADIUS_PER_EDGE: f64 = 0.62;
-
-/// Emitted radiance per meter at an index position.
-fn emission_at(medium: &OracleMedium, emission: &Field<f64>, p: DVec3) -> f64 {
-    let fine = (emission.dims[0] / medium.sigma_t.dims[0]) as f64;
-    emission.trilinear_zero(fine * (p + 0.5) - 0.5)
-}
 
 /// Where a ray is between `low` and `high`, from its origin on; in the units of its direction.
 pub fn box_interval(ray: &Ray, low: DVec3, high: DVec3) -> Option<[f64; 2]> {

@@ -1,7 +1,10 @@
 use std::f64::consts::PI;
 
+use glam::DMat4;
+
 use super::*;
 use crate::nodes::oracle_scene::constant_light;
+use crate::optics::blackbody::blackbody_rgb;
 use crate::optics::transmittance::one_minus_exp;
 
 fn medium(dims: [usize; 3], sigma: f64, albedo: f64, g: f64) -> OracleMedium {
@@ -144,7 +147,16 @@ fn emission_adds_up_and_is_absorbed() {
     // In void: eps times the length, the fade of half a cell at both ends included. In an absorbing
     // medium, where both fade alike, eps/sigma (1 − e^{−tau}), to the midpoint rule in the fade.
     let residual = constant_light([4, 4, 8], 0.0);
-    let emission = Field::filled([4, 4, 8], 3.0);
+    let glow = |dims: [usize; 3], flame_from_index: DMat4| OracleEmission {
+        flame: Field::filled(dims, 3.0 / blackbody_rgb(1900.0, 2000.0)[1]),
+        flame_from_index,
+        kelvin_above: Field::filled([1; 3], 0.0),
+        kelvin_outside: 1900.0,
+        kelvin_from_index: DMat4::IDENTITY,
+        reference_kelvin: 2000.0,
+        channel: 1,
+    };
+    let emission = glow([4, 4, 8], DMat4::IDENTITY);
     for (sigma, expected, tolerance) in [(0.0, 3.0 * 4.0, 1e-14), (0.5, 6.0 * one_minus_exp(2.0), 1e-14)] {
         let medium = medium([4, 4, 8], sigma, 0.0, 0.0);
         let mut scene = scene(&medium, &[], &residual, &[]);
@@ -153,7 +165,8 @@ fn emission_adds_up_and_is_absorbed() {
         assert!((seen.emission / expected - 1.0).abs() < tolerance, "{sigma}: {seen:?}");
     }
     // On a grid three times as fine the fade is a third as long: a cell's width stays.
-    let fine = Field::filled([12, 12, 24], 3.0);
+    let finer = DMat4::from_scale(DVec3::splat(3.0)) * DMat4::from_translation(DVec3::splat(0.5));
+    let fine = glow([12, 12, 24], DMat4::from_translation(DVec3::splat(-0.5)) * finer);
     let medium = medium([4, 4, 8], 0.0, 0.0, 0.0);
     let mut scene = scene(&medium, &[], &residual, &[]);
     scene.emission = Some(&fine);
