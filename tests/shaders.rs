@@ -24,6 +24,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("gathered", SWITCH),
     ("narrow", SWITCH),
     ("emission", SWITCH),
+    ("directions", &["16", "64"]),
 ];
 
 /// Ways to fill in the names that the text asks for: all products of those with many values; of those that are
