@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::LightField;
 use crate::gpu::{Bind, Format, Gpu, GpuError, Recorder, Texture};
 use crate::light::Window;
 use crate::mirror;
@@ -45,6 +46,8 @@ pub struct Beams {
     /// Whether surfaces were in the way: only then are corners of the atlas marked as hidden
     /// (`shaders/lib/shadow.wgsl`).
     pub has_shadows: bool,
+    /// Light that is known already, besides the beams; the residual hands it on to the camera.
+    pub fields: Vec<LightField>,
 }
 
 /// Optical depths at the corners of cells. One or two beams have a 32-bit texel each; of more, four share a
@@ -156,6 +159,7 @@ impl Beams {
             ambient: [0.0; 3],
             lattice: lattice.clone(),
             has_shadows: false,
+            fields: Vec::new(),
         })
     }
 
@@ -166,21 +170,18 @@ impl Beams {
     pub fn merge(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
         let lit: Vec<&Beams> = parts.iter().copied().filter(|part| !part.beams.is_empty()).collect();
         let ambient = std::array::from_fn(|c| parts.iter().map(|part| part.ambient[c]).sum());
-        match lit.as_slice() {
-            [] => Ok(Self { ambient, ..Self::none(gpu, lattice)? }),
-            [one] => Ok(Self { ambient, ..(*one).clone() }),
-            _ => Self::concatenate(gpu, lattice, &lit, ambient),
-        }
+        let fields = parts.iter().flat_map(|part| part.fields.iter().cloned()).collect();
+        let merged = match lit.as_slice() {
+            [] => Self::none(gpu, lattice)?,
+            [one] => (*one).clone(),
+            _ => Self::concatenate(gpu, lattice, &lit)?,
+        };
+        Ok(Self { ambient, fields, ..merged })
     }
 
     /// Packs of four are copied whole: a part whose number of beams is no multiple of 4 is filled up with
     /// beams without power.
-    fn concatenate(
-        gpu: &Gpu,
-        lattice: &Lattice,
-        parts: &[&Beams],
-        ambient: [f64; 3],
-    ) -> Result<Self, GpuError> {
+    fn concatenate(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
         let n_beams: usize = parts.iter().map(|part| part.beams.len()).sum();
         let pack = if n_beams <= SINGLE { 1 } else { 4 };
         let n_packs: usize = parts.iter().map(|part| part.beams.len().div_ceil(pack)).sum();
@@ -203,7 +204,7 @@ impl Beams {
         }
         recorder.finish()?;
         let has_shadows = parts.iter().any(|part| part.has_shadows);
-        Ok(Self { beams, tau, ambient, lattice: lattice.clone(), has_shadows })
+        Ok(Self { beams, tau, has_shadows, ..Self::none(gpu, lattice)? })
     }
 
     /// Beams with texels of their own, as one texel of four of another atlas.

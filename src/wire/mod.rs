@@ -7,12 +7,14 @@
 
 mod beams;
 mod channels;
+mod light_field;
 mod medium;
 mod residual;
 mod surfaces;
 
 pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
 pub use channels::Channels;
+pub use light_field::LightField;
 pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;
 pub use surfaces::{SurfaceNode, SurfaceTriangle, Surfaces};
