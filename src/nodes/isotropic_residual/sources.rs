@@ -46,7 +46,7 @@ pub(super) fn sources(
         pad_1: 0,
     };
     let mut recorder = gpu.recorder("sources");
-    let inputs = [Bind::Texture(&medium.sigma_t), Bind::Texture(&beams.tau.texture), Bind::Buffer(&list)];
+    let inputs = [Bind::Texture(&medium.sigma_t), Bind::Texture(&beams.star().texture), Bind::Buffer(&list)];
     let stage = gpu.stage("isotropic_residual/sources", &beams.tau.choices())?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
     run.finish(recorder)?;

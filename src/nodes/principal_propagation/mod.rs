@@ -4,13 +4,14 @@ use super::{NodeKind, Run, no_files, shadow, walk};
 use crate::geometry::Mesh;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::light::Ordinates;
-use crate::wire::{Beam, Beams, Medium, Place};
+use crate::wire::{Beam, Beams, Medium, Place, Surfaces};
 
 mod aligned;
 mod literal;
 #[cfg(test)]
 pub(super) mod oracle;
 mod scan;
+pub(super) mod widening;
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
 
@@ -37,6 +38,10 @@ static SPEC: NodeSpec = NodeSpec {
         ParamSpec::int("iterations", 0).between(0.0, 100_000.0).soft(0.0, 1024.0).doc(
             "Hops of scheme literal; 0: as many as the grid of an ordinate has cells along its longest axis.",
         ),
+        ParamSpec::choice("peak", &["straight", "widening"]).doc(
+            "widening: light that is scattered forward by little spreads across its beam as it goes, at several times the cost: for \
+             narrow beams, windows and the edges of shadows. Wide light hardly changes.",
+        ),
     ],
 };
 
@@ -47,7 +52,13 @@ const SAMPLES_OF_A_SCAN: f64 = 125.0;
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
     let light: &Ordinates = run.inputs.one("ordinates");
+    let widens = run.params.text("peak") == "widening";
     if run.params.text("scheme") == "literal" {
+        if widens {
+            return Err(NodeError::new(
+                "peak widening is for beams, and scheme literal has none: choose auto, scan or walk, or peak straight",
+            ));
+        }
         return literal_scheme(run, medium, light);
     }
     let beams: Vec<Beam> = light
@@ -76,8 +87,14 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     } else {
         walk::walk(run, medium, &beams)?
     };
+    let peak = if widens && medium.g > 0.0 {
+        let surfaces = Surfaces::new(run.gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
+        Some(widening::widen(run, medium, &beams, &tau, &surfaces)?)
+    } else {
+        None
+    };
     let has_shadows = shadow::cast(run, medium, &beams, &tau)?;
-    let bytes = tau.texture.bytes();
+    let bytes = tau.texture.bytes() + peak.as_ref().map_or(0, |peak| peak.texture.bytes());
     Ok(vec![Value::new(
         PortType::Beams,
         bytes,
@@ -87,6 +104,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             ambient: light.ambient,
             lattice: medium.lattice.clone(),
             has_shadows,
+            peak,
             fields: Vec::new(),
         },
     )])

@@ -57,6 +57,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             ambient: [0.0; 3],
             lattice: medium.lattice.clone(),
             has_shadows,
+            peak: None,
             fields: Vec::new(),
         },
     )])
