@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
+use super::LightField;
 use crate::gpu::{Bind, Format, Gpu, GpuError, Recorder, Texture};
 use crate::light::Window;
 use crate::mirror;
@@ -45,6 +46,10 @@ pub struct Beams {
     /// Whether surfaces were in the way: only then are corners of the atlas marked as hidden
     /// (`shaders/lib/shadow.wgsl`).
     pub has_shadows: bool,
+    /// Depths by which E\* = E exp(−k tau) where the peak widens; without them, those of `tau`.
+    pub peak: Option<TauAtlas>,
+    /// Light that is known already, besides the beams; the residual hands it on to the camera.
+    pub fields: Vec<LightField>,
 }
 
 /// Optical depths at the corners of cells. One or two beams have a 32-bit texel each; of more, four share a
@@ -141,6 +146,39 @@ impl TauAtlas {
     pub fn choices(&self) -> [(&'static str, String); 2] {
         [("pack", self.pack.to_string()), ("format", self.texture.format().wgsl().to_owned())]
     }
+
+    /// Copies a pack of this atlas of `n_beams` to another's; what has texels of its own becomes one texel of
+    /// four where the other has those.
+    fn copy_pack(
+        &self,
+        gpu: &Gpu,
+        recorder: &mut Recorder,
+        pack: usize,
+        n_beams: usize,
+        into: &TauAtlas,
+        into_pack: usize,
+    ) -> Result<(), GpuError> {
+        let origin = into.origin(into_pack);
+        if self.pack == into.pack {
+            recorder.copy_box(&self.texture, self.origin(pack), &into.texture, origin, into.corners);
+            return Ok(());
+        }
+        let beam = |n: usize| {
+            let [x, y, z] = self.origin(n.min(n_beams - 1));
+            [x, y, z, 0]
+        };
+        let params = RepackParams {
+            corners: into.corners.map(|n| n as u32),
+            n_beams: n_beams as u32,
+            origins: [beam(0), beam(1)],
+            origin,
+            pad: 0,
+        };
+        let inputs = [Bind::Texture(&self.texture)];
+        let bound = gpu.stage("repack", &[])?.bind(gpu, &params, &inputs, &[Bind::Texture(&into.texture)]);
+        recorder.dispatch(&bound, into.corners);
+        Ok(())
+    }
 }
 
 impl Beams {
@@ -156,6 +194,8 @@ impl Beams {
             ambient: [0.0; 3],
             lattice: lattice.clone(),
             has_shadows: false,
+            peak: None,
+            fields: Vec::new(),
         })
     }
 
@@ -166,68 +206,50 @@ impl Beams {
     pub fn merge(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
         let lit: Vec<&Beams> = parts.iter().copied().filter(|part| !part.beams.is_empty()).collect();
         let ambient = std::array::from_fn(|c| parts.iter().map(|part| part.ambient[c]).sum());
-        match lit.as_slice() {
-            [] => Ok(Self { ambient, ..Self::none(gpu, lattice)? }),
-            [one] => Ok(Self { ambient, ..(*one).clone() }),
-            _ => Self::concatenate(gpu, lattice, &lit, ambient),
-        }
+        let fields = parts.iter().flat_map(|part| part.fields.iter().cloned()).collect();
+        let merged = match lit.as_slice() {
+            [] => Self::none(gpu, lattice)?,
+            [one] => (*one).clone(),
+            _ => Self::concatenate(gpu, lattice, &lit)?,
+        };
+        Ok(Self { ambient, fields, ..merged })
+    }
+
+    /// Depths of the light that is counted as not scattered.
+    pub fn star(&self) -> &TauAtlas {
+        self.peak.as_ref().unwrap_or(&self.tau)
     }
 
     /// Packs of four are copied whole: a part whose number of beams is no multiple of 4 is filled up with
     /// beams without power.
-    fn concatenate(
-        gpu: &Gpu,
-        lattice: &Lattice,
-        parts: &[&Beams],
-        ambient: [f64; 3],
-    ) -> Result<Self, GpuError> {
+    fn concatenate(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
         let n_beams: usize = parts.iter().map(|part| part.beams.len()).sum();
         let pack = if n_beams <= SINGLE { 1 } else { 4 };
         let n_packs: usize = parts.iter().map(|part| part.beams.len().div_ceil(pack)).sum();
-        let tau = TauAtlas::new(gpu, lattice, pack * n_packs)?;
-        let mut recorder = gpu.recorder("merge beams");
         let mut beams: Vec<Beam> = Vec::new();
         for part in parts {
-            for four in 0..part.beams.len().div_ceil(pack) {
-                let to = tau.origin(beams.len() / pack);
-                if part.tau.pack == pack {
-                    let from = part.tau.origin(four);
-                    recorder.copy_box(&part.tau.texture, from, &tau.texture, to, tau.corners);
-                } else {
-                    part.repack(gpu, &mut recorder, &tau, to)?;
-                }
-                let rest = &part.beams[pack * four..];
-                let dark = Beam { power: [0.0; 3], ..rest[0] };
-                beams.extend((0..pack).map(|n| rest.get(n).copied().unwrap_or(dark)));
-            }
+            let dark = Beam { power: [0.0; 3], ..part.beams[0] };
+            beams.extend(&part.beams);
+            beams.resize(beams.len().next_multiple_of(pack), dark);
         }
-        recorder.finish()?;
+        let joined = |atlas_of: fn(&Beams) -> &TauAtlas| -> Result<TauAtlas, GpuError> {
+            let joined = TauAtlas::new(gpu, lattice, pack * n_packs)?;
+            let mut recorder = gpu.recorder("merge beams");
+            let mut to = 0;
+            for part in parts {
+                let n_beams = part.beams.len();
+                for four in 0..n_beams.div_ceil(pack) {
+                    atlas_of(part).copy_pack(gpu, &mut recorder, four, n_beams, &joined, to)?;
+                    to += 1;
+                }
+            }
+            recorder.finish()?;
+            Ok(joined)
+        };
+        let tau = joined(|part| &part.tau)?;
+        let peak =
+            if parts.iter().any(|part| part.peak.is_some()) { Some(joined(Beams::star)?) } else { None };
         let has_shadows = parts.iter().any(|part| part.has_shadows);
-        Ok(Self { beams, tau, ambient, lattice: lattice.clone(), has_shadows })
-    }
-
-    /// Beams with texels of their own, as one texel of four of another atlas.
-    fn repack(
-        &self,
-        gpu: &Gpu,
-        recorder: &mut Recorder,
-        into: &TauAtlas,
-        origin: [u32; 3],
-    ) -> Result<(), GpuError> {
-        let beam = |n: usize| {
-            let [x, y, z] = self.tau.origin(n.min(self.beams.len() - 1));
-            [x, y, z, 0]
-        };
-        let params = RepackParams {
-            corners: into.corners.map(|n| n as u32),
-            n_beams: self.beams.len() as u32,
-            origins: [beam(0), beam(1)],
-            origin,
-            pad: 0,
-        };
-        let inputs = [Bind::Texture(&self.tau.texture)];
-        let bound = gpu.stage("repack", &[])?.bind(gpu, &params, &inputs, &[Bind::Texture(&into.texture)]);
-        recorder.dispatch(&bound, into.corners);
-        Ok(())
+        Ok(Self { beams, tau, peak, has_shadows, ..Self::none(gpu, lattice)? })
     }
 }

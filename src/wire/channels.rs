@@ -22,11 +22,17 @@ impl Channels {
 
     /// What this medium in this light needs.
     pub fn of(medium: &Medium, beams: &Beams) -> Self {
-        if medium.emission.is_some() {
+        if medium.emission.is_some() || beams.fields.iter().any(|field| field.channels.count == 3) {
             return Self::RGB;
         }
-        let mut powers =
-            beams.beams.iter().map(|beam| beam.power).chain([beams.ambient]).filter_map(chromaticity);
+        let of_fields = beams.fields.iter().map(|field| field.channels.color);
+        let of_beams = beams.beams.iter().map(|beam| beam.power);
+        Self::of_powers(medium, of_fields.chain(of_beams).chain([beams.ambient]))
+    }
+
+    /// What this medium needs in lights of these powers.
+    pub fn of_powers(medium: &Medium, powers: impl Iterator<Item = [f64; 3]>) -> Self {
+        let mut powers = powers.filter_map(chromaticity);
         let Some((_, color)) = powers.next() else {
             return Self { count: 1, color: [1.0; 3] };
         };

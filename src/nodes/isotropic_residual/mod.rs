@@ -18,6 +18,7 @@ use crate::optics::directions::LineSet;
 use crate::wire::{Channels, Medium, Surfaces};
 
 mod bounce;
+mod fields;
 mod level;
 #[cfg(test)]
 pub(super) mod oracle;
@@ -122,12 +123,19 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     };
     let problem = level::Problem::new(medium, &channels, beams.ambient, effort.lines);
     let surfaces = Surfaces::new(run.gpu, &medium.lattice, &meshes)?;
+    if !surfaces.is_empty() && !beams.fields.is_empty() {
+        return Err(NodeError::new(
+            "surfaces are lit by beams, and principal_propagation's scheme literal has none: choose another scheme, \
+             or disconnect surfaces",
+        ));
+    }
     let residual = if surfaces.is_empty() {
         let sources = sources::sources(run, medium, &beams, &channels, &problem)?;
         solver::solve(run, medium, &sources, &problem, effort, channels, level::BATCH_BYTES)?
     } else {
         bounce::solve(run, medium, &beams, &surfaces, &problem, effort, channels)?
     };
+    let residual = beams.fields.iter().try_fold(residual, |sum, field| fields::add(run, sum, field))?;
     let bytes = residual.moments.bytes() + residual.surface_light.as_ref().map_or(0, |light| light.bytes());
     Ok(vec![Value::new(PortType::Residual, bytes, residual)])
 }

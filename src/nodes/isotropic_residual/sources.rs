@@ -49,7 +49,7 @@ pub(super) fn sources(
     let glow = Emission::or_none(medium.emission.as_ref(), gpu)?;
     let inputs = [
         Bind::Texture(&medium.sigma_t),
-        Bind::Texture(&beams.tau.texture),
+        Bind::Texture(&beams.star().texture),
         Bind::Buffer(&list),
         Bind::Texture(&glow.cells),
     ];

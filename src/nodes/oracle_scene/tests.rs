@@ -1,4 +1,5 @@
 //! The oracles as a chain.
 
+mod pencils;
 mod slabs;
 mod spheres;

@@ -51,6 +51,14 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     Ok(vec![Value::new(
         PortType::Beams,
         bytes,
-        Beams { beams, tau, ambient: [0.0; 3], lattice: medium.lattice.clone(), has_shadows },
+        Beams {
+            beams,
+            tau,
+            ambient: [0.0; 3],
+            lattice: medium.lattice.clone(),
+            has_shadows,
+            peak: None,
+            fields: Vec::new(),
+        },
     )])
 }
