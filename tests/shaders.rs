@@ -15,6 +15,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("peak", &["true", "false"]),
     ("residual", &["true", "false"]),
     ("narrow", &["true", "false"]),
+    ("directions", &["16", "64"]),
 ];
 
 /// All ways to fill in the names that the text asks for.

@@ -1,8 +1,9 @@
 // A thread: the irradiance [W/m2] on one side of a point of a surface, from beams through the medium and past
-// surfaces, and from 64 directions: the medium's own light, surfaces, ambient light.
+// surfaces, and from some directions: the medium's own light, surfaces, ambient light.
 
 #import "isotropic_residual/bounce.wgsl"
 #import "lib/beam.wgsl"
+#import "lib/block.wgsl"
 #import "lib/lobe.wgsl"
 #import "lib/patches.wgsl"
 #import "lib/transmittance.wgsl"
@@ -16,8 +17,8 @@ struct SurfacePoint {
 @group(0) @binding(0) var<uniform> params: BounceParams;
 @group(1) @binding(0) var sigma_t: texture_3d<f32>;
 @group(1) @binding(1) var linear_clamp: sampler;
-@group(1) @binding(2) var sources: texture_3d<f32>;
-@group(1) @binding(3) var moments: texture_3d<f32>;
+@group(1) @binding(2) var blocks: texture_3d<f32>;
+@group(1) @binding(3) var scattered: texture_3d<f32>;
 @group(1) @binding(4) var<storage, read> surface_nodes: array<SurfaceNode>;
 @group(1) @binding(5) var<storage, read> surface_triangles: array<SurfaceTriangle>;
 @group(1) @binding(6) var<storage, read> points: array<SurfacePoint>;
@@ -26,8 +27,11 @@ struct SurfacePoint {
 @group(1) @binding(9) var<storage, read> beams: array<Beam>;
 @group(2) @binding(0) var<storage, read_write> irradiances: array<vec4f>;
 
-const N_DIRECTIONS: u32 = 64u;
+const N_DIRECTIONS: u32 = {directions}u;
+const N_CHANNELS: u32 = {channels}u;
 const FAR: f32 = 1e30;
+// Where less than this is left of a ray it ends.
+const OPAQUE: f32 = 1e-4;
 // Whether beams count whose light the camera adds point by point.
 const HAS_NARROW: bool = {narrow};
 
@@ -48,7 +52,7 @@ fn from_beam(beam: Beam, p: vec3f, normal: vec3f) -> vec3f {
     }
     let tau = walk(sigma_t, linear_clamp, params.shape, params.level.cell_m, p, to_light, reach);
     var k = vec3f(0.0);
-    for (var c = 0u; c < params.level.n_channels; c += 1u) {
+    for (var c = 0u; c < N_CHANNELS; c += 1u) {
         k[c] = params.level.channels[c].k;
     }
     return cosine * falloff * beam.power.xyz * exp(-k * tau);
@@ -59,37 +63,46 @@ fn arriving(p: vec3f, direction: vec3f) -> vec3f {
     let level = params.level;
     let hit = nearest_surface(p, direction, FAR);
     let span = ray_box(p, direction, vec3f(0.0), vec3f(level.dims) - 1.0);
-    let from_t = span.x;
-    let way = max(0.0, min(span.y, hit.t) - from_t);
+    let way = max(0.0, min(span.y, hit.t) - span.x);
     let n_steps = ceil(way);
     let dt = way / max(n_steps, 1.0);
-    var behind = vec3f(0.0);
-    if hit.triangle != NO_SURFACE {
-        behind = patch_radiance(hit.triangle, p + hit.t * direction, direction);
-    }
+    let length_m = dt * level.cell_m;
     var radiance = vec3f(0.0);
-    for (var c = 0u; c < level.n_channels; c += 1u) {
-        let channel = level.channels[c];
-        var through = 1.0;
-        for (var n = 0.0; n < n_steps; n += 1.0) {
-            let at = p + (from_t + (n + 0.5) * dt) * direction;
-            let extinction = extinction(sigma_t, linear_clamp, at);
-            if extinction > 0.0 {
-                let state = layered(moments, linear_clamp, level.n_channels, c, at);
-                let given = layered(sources, linear_clamp, level.n_channels, c, at);
-                let total = extinction * channel.scatter * state * vec4f(1.0, vec3f(level.g_star)) + given;
-                let lobe = lobe_from_moments(total.x, total.yzw);
-                let shape = 1.0 - dot(lobe.yzw, direction);
-                let length_m = dt * level.cell_m;
-                let depth = channel.k * extinction * length_m;
-                radiance[c] += through * mean_transmittance(depth) * length_m * lobe.x * shape * shape;
-                through *= exp(-depth);
+    var through = vec3f(1.0);
+    for (var n = 0.0; n < n_steps; n += 1.0) {
+        var at = p;
+        var extinction_here = 0.0;
+        // On to the next matter, in a loop of its own: a void step then costs little.
+        for (; n < n_steps; n += 1.0) {
+            at = p + (span.x + (n + 0.5) * dt) * direction;
+            extinction_here = extinction(sigma_t, linear_clamp, at);
+            if extinction_here > 0.0 {
+                break;
             }
+            n = max(n, floor((empty_until(blocks, p, direction, at) - span.x) / dt - 0.5));
         }
-        let beyond = select(channel.inflow, behind[c], hit.triangle != NO_SURFACE);
-        radiance[c] += through * beyond;
+        if n >= n_steps {
+            break;
+        }
+        for (var c = 0u; c < N_CHANNELS; c += 1u) {
+            let depth = level.channels[c].k * extinction_here * length_m;
+            let source = layered(scattered, linear_clamp, N_CHANNELS, c, at);
+            let lobe = lobe_from_moments(source.x, source.yzw);
+            let shape = 1.0 - dot(lobe.yzw, direction);
+            radiance[c] += through[c] * mean_transmittance(depth) * length_m * lobe.x * shape * shape;
+            through[c] *= exp(-depth);
+        }
+        // Channels that are not solved have no say.
+        through = select(through.xxx, through, N_CHANNELS == 3u);
+        if max(through.x, max(through.y, through.z)) < OPAQUE {
+            break;
+        }
     }
-    return radiance;
+    var beyond = vec3f(level.channels[0].inflow, level.channels[1].inflow, level.channels[2].inflow);
+    if hit.triangle != NO_SURFACE {
+        beyond = patch_radiance(hit.triangle, p + hit.t * direction, direction);
+    }
+    return radiance + through * beyond;
 }
 
 @compute @workgroup_size(64, 1, 1)

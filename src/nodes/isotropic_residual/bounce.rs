@@ -1,15 +1,15 @@
 //! Light that surfaces send back into the medium (DESIGN 6.7).
 //!
 //! Surfaces are cut into patches, each with one irradiance E a side, which send back L = reflectance E / pi. E
-//! is what beams bring, past surfaces and through the medium, and a march of 64 directions through what the
-//! medium scatters, other patches and ambient light. From every cell 32 rays look for patches: their (phi, F) is the
-//! first-collision source Q0 += sigma_s* phi, Q1 += sigma_s* g* F of another solve, and is added to the
-//! field that the camera reads. Twice: what comes back once more lights the patches again.
-//! In the end E is computed once more, at the corners of the patches and without narrow beams: what a camera
-//! finds on surfaces that it sees.
+//! is what beams bring, past surfaces and through the medium, and a march of 16 directions through what the
+//! medium scatters, other patches and ambient light. From cells near matter 32 rays look for patches: their
+//! (phi, F) is the first-collision source Q0 += sigma_s* phi, Q1 += sigma_s* g* F of another solve, and is
+//! added to the field that the camera reads. Twice: what comes back once more lights the patches again.
+//! In the end E is computed once more, from 64 directions, at the corners of the patches and without narrow
+//! beams: what a camera finds on surfaces that it sees.
 //!
 //! Limits: surfaces do not block the lines of the solver; the light of patches is as coarse as they are (at
-//! least two cells, 2^14 of them on all surfaces), and is gathered on at most 2^18 cells. Tested by the closed
+//! least two cells, 2^14 of them on all surfaces), and is gathered on at most 2^16 cells. Tested by the closed
 //! forms of planes in a void and in a thin medium, and by what a closed ball must hold.
 
 use std::sync::Arc;
@@ -39,9 +39,11 @@ mirror! {
     }
 }
 
-const BOUNCES: usize = 2;
-/// Cells that look for patches, at most.
-const LIT_CELLS: usize = 1 << 18;
+/// Cells that look for patches, at most: in the last bounce, which is seen, and in the one before.
+const LIT_CELLS: [usize; 2] = [1 << 16, 1 << 13];
+/// Directions from which light is gathered: for the camera, and for patches, whose own light is spread
+/// over the medium before it is seen.
+const DIRECTIONS: [usize; 2] = [64, 16];
 /// Threads along x of one dispatch, 65,535 groups of 64; `surface_light.wgsl`.
 const ROW: usize = 4_194_240;
 
@@ -55,96 +57,124 @@ pub(super) fn solve(
     effort: Effort,
     channels: Channels,
 ) -> Result<Residual, NodeError> {
-    let gpu = run.gpu;
-    let dims = medium.lattice.dims;
     let patches = Points::middles(run, surfaces)?;
-    let of_beams = super::sources::sources(run, medium, beams, &channels, problem)?;
-    let settle = |sources: &Sources, effort: Effort| {
-        solver::solve(run, medium, sources, problem, effort, channels, level::BATCH_BYTES)
-    };
-    // What only lights patches need not be as good as what is seen.
-    let rough = match effort.kind {
-        Kind::Cascade => Effort { sweeps: 1, coarse_sweeps: effort.coarse_sweeps.min(8), ..effort },
-        _ => effort,
-    };
-    let mut residual = settle(&of_beams, rough)?;
-    let coarser = coarser(dims);
+    let list = beam_list(run.gpu, beams, &channels)?;
     let params = BounceParams {
-        level: problem.level(dims, medium.lattice.cell_m),
+        level: problem.level(medium.lattice.dims, medium.lattice.cell_m),
         shape: medium.shape(),
         n_beams: beams.beams.len() as u32,
         n_points: 0,
-        coarser: coarser as u32,
+        coarser: 1,
         pad: 0,
     };
-    let list = beam_list(gpu, beams, &channels)?;
-    let lit = Lit { run, medium, beams, surfaces, list: &list, params: &params, patches: &patches };
-    let sampler = gpu.linear_sampler();
-    let [nodes, triangles] = surfaces.binds();
-    let (clamp, sigma_t) = (Bind::Sampler(&sampler), Bind::Texture(&medium.sigma_t));
-    let layers = problem.layers(dims);
-    let lit_dims = dims.map(|n| n / coarser);
-    let uncollided =
-        gpu.texture3("light straight from surfaces", problem.layers(lit_dims), Format::Rgba32Float, REMEDY)?;
-    let mut on_patches = patches.irradiances(run)?;
-    let mut sources: Option<Sources> = None;
-    for bounce in 0..BOUNCES {
-        let field = &sources.as_ref().unwrap_or(&of_beams).field;
-        on_patches = lit.irradiances(&patches, [field, &residual.moments], &on_patches, true)?;
-
-        let inputs =
-            [sigma_t, clamp, nodes, triangles, Bind::Buffer(&patches.grids), Bind::Buffer(&on_patches)];
-        let stage = gpu.stage("isotropic_residual/uncollided", &[])?;
-        let mut recorder = gpu.recorder("light straight from surfaces");
-        recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&uncollided)]), lit_dims);
-        run.finish(recorder)?;
-
-        let field = gpu.texture3("sources", layers, Format::Rgba32Float, REMEDY)?;
-        let inputs = [sigma_t, clamp, Bind::Texture(&uncollided), Bind::Texture(&of_beams.field)];
-        let stage = gpu.stage("isotropic_residual/first_collision", &[])?;
-        let mut recorder = gpu.recorder("light straight from surfaces");
-        recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
-        run.finish(recorder)?;
-        let collided = with_sums(run, problem, &params.level, field)?;
-        residual = settle(&collided, if bounce + 1 < BOUNCES { rough } else { effort })?;
-        sources = Some(collided);
-    }
-    // What comes straight from surfaces is in the sources by its first collision, and seen itself by the rays
-    // that meet patches: the moments here are still without it.
-    let field = &sources.as_ref().unwrap_or(&of_beams).field;
+    let of_beams = super::sources::sources(run, medium, beams, &channels, problem)?;
+    let scene = Scene { run, medium, beams, surfaces, problem, channels, list, params, patches, of_beams };
+    // What only lights patches need not be as good as what is seen: all grids but the finest are solved.
+    let rough = match effort.kind {
+        Kind::Cascade => Effort { sweeps: 0, coarse_sweeps: effort.coarse_sweeps.min(8), ..effort },
+        _ => effort,
+    };
+    let unlit = scene.patches.irradiances(run)?;
+    let unseen = scene.scattered(&scene.of_beams, &scene.settle(&scene.of_beams, rough)?)?;
+    let [most, most_before] = LIT_CELLS;
+    let before = scene.bounce(&unseen, &unlit, most_before, rough)?;
+    let last = scene.bounce(&before.scattered, &before.on_patches, most, effort)?;
     let corners = Points::corners(run, surfaces)?;
-    let irradiances = lit.irradiances(&corners, [field, &residual.moments], &on_patches, false)?;
+    let irradiances = scene.irradiances(&corners, &last.scattered, &last.on_patches, Use::Camera)?;
     let surface_light =
         SurfaceLight { irradiances, grids: corners.grids, triangles: surfaces.corners.clone() };
-
-    let moments = gpu.texture3("moments", layers, Format::Rgba32Float, REMEDY)?;
-    let inputs = [clamp, Bind::Texture(&uncollided), Bind::Texture(&residual.moments)];
-    let stage = gpu.stage("isotropic_residual/add_uncollided", &[])?;
-    let mut recorder = gpu.recorder("light straight from surfaces");
-    recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&moments)]), layers);
-    run.finish(recorder)?;
-    Ok(Residual { moments: Arc::new(moments), surface_light: Some(Arc::new(surface_light)), ..residual })
+    Ok(Residual {
+        moments: Arc::new(scene.with_uncollided(&last)?),
+        surface_light: Some(Arc::new(surface_light)),
+        ..last.residual
+    })
 }
 
-/// What light on surfaces depends on, all bounces alike.
-struct Lit<'a> {
+/// What light on points of surfaces is for.
+#[derive(Clone, Copy, PartialEq)]
+enum Use {
+    Patches,
+    /// Which adds narrow beams by itself.
+    Camera,
+}
+
+/// What all bounces share.
+struct Scene<'a> {
     run: &'a Run<'a>,
     medium: &'a Medium,
     beams: &'a Beams,
     surfaces: &'a Surfaces,
-    list: &'a Buffer,
-    params: &'a BounceParams,
-    patches: &'a Points,
+    problem: &'a Problem,
+    channels: Channels,
+    list: Buffer,
+    params: BounceParams,
+    patches: Points,
+    of_beams: Sources,
 }
 
-impl Lit<'_> {
-    /// E on both sides of points, by sources and moments of the medium and by what arrived on patches before.
+/// Light after a bounce.
+struct Bounced {
+    /// What patches sent back, before it was spread.
+    on_patches: Buffer,
+    /// phi and F straight from surfaces, in cells `coarser` times as large as the medium's.
+    uncollided: Texture,
+    coarser: u32,
+    /// What all cells scatter, after their first collision too.
+    scattered: Texture,
+    /// Without what comes straight from surfaces.
+    residual: Residual,
+}
+
+impl Scene<'_> {
+    fn settle(&self, sources: &Sources, effort: Effort) -> Result<Residual, NodeError> {
+        solver::solve(self.run, self.medium, sources, self.problem, effort, self.channels, level::BATCH_BYTES)
+    }
+
+    /// Lights the patches, and the medium by them.
+    fn bounce(
+        &self,
+        scattered: &Texture,
+        on_patches: &Buffer,
+        most_lit: usize,
+        effort: Effort,
+    ) -> Result<Bounced, NodeError> {
+        let gpu = self.run.gpu;
+        let on_patches = self.irradiances(&self.patches, scattered, on_patches, Use::Patches)?;
+        let dims = self.medium.lattice.dims;
+        let coarser = coarser(dims, most_lit);
+        let params = BounceParams { coarser: coarser as u32, ..self.params };
+        let lit_dims = dims.map(|n| n / coarser);
+        let sampler = gpu.linear_sampler();
+        let (clamp, sigma_t) = (Bind::Sampler(&sampler), Bind::Texture(&self.medium.sigma_t));
+        let [nodes, triangles] = self.surfaces.binds();
+        let inputs = [
+            sigma_t,
+            clamp,
+            Bind::Texture(&self.medium.blocks),
+            nodes,
+            triangles,
+            Bind::Buffer(&self.patches.grids),
+            Bind::Buffer(&on_patches),
+        ];
+        let uncollided = self.field("light straight from surfaces", lit_dims)?;
+        self.dispatch("uncollided", &params, &inputs, &uncollided, lit_dims)?;
+
+        let inputs = [sigma_t, clamp, Bind::Texture(&uncollided), Bind::Texture(&self.of_beams.field)];
+        let field = self.field("sources", dims)?;
+        self.dispatch("first_collision", &params, &inputs, &field, self.problem.layers(dims))?;
+        let sources = with_sums(self.run, self.problem, &self.params.level, field)?;
+        let residual = self.settle(&sources, effort)?;
+        let scattered = self.scattered(&sources, &residual)?;
+        Ok(Bounced { on_patches, uncollided, coarser: params.coarser, scattered, residual })
+    }
+
+    /// E on both sides of points, by what the medium scatters and by what arrived on patches before.
     fn irradiances(
         &self,
         points: &Points,
-        [sources, moments]: [&Texture; 2],
+        scattered: &Texture,
         on_patches: &Buffer,
-        narrow: bool,
+        what_for: Use,
     ) -> Result<Buffer, NodeError> {
         let gpu = self.run.gpu;
         let found = points.irradiances(self.run)?;
@@ -153,18 +183,26 @@ impl Lit<'_> {
         let inputs = [
             Bind::Texture(&self.medium.sigma_t),
             Bind::Sampler(&sampler),
-            Bind::Texture(sources),
-            Bind::Texture(moments),
+            Bind::Texture(&self.medium.blocks),
+            Bind::Texture(scattered),
             nodes,
             triangles,
             Bind::Buffer(&points.list),
             Bind::Buffer(&self.patches.grids),
             Bind::Buffer(on_patches),
-            Bind::Buffer(self.list),
+            Bind::Buffer(&self.list),
         ];
         let [pack, _] = self.beams.tau.choices();
-        let stage = gpu.stage("isotropic_residual/surface_light", &[pack, ("narrow", narrow.to_string())])?;
-        let params = BounceParams { n_points: points.n_points as u32, ..*self.params };
+        let [of_camera, of_patches] = DIRECTIONS;
+        let directions = if what_for == Use::Camera { of_camera } else { of_patches };
+        let choices = [
+            pack,
+            ("narrow", (what_for == Use::Patches).to_string()),
+            ("directions", directions.to_string()),
+            ("channels", self.channels.count.to_string()),
+        ];
+        let stage = gpu.stage("isotropic_residual/surface_light", &choices)?;
+        let params = BounceParams { n_points: points.n_points as u32, ..self.params };
         let bound = stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&found)]);
         let n_sides = 2 * points.n_points;
         let mut recorder = gpu.recorder("light on surfaces");
@@ -172,13 +210,53 @@ impl Lit<'_> {
         self.run.finish(recorder)?;
         Ok(found)
     }
+
+    fn scattered(&self, sources: &Sources, residual: &Residual) -> Result<Texture, NodeError> {
+        let dims = self.medium.lattice.dims;
+        let [sigma_t, moments] = [&self.medium.sigma_t, &residual.moments].map(|field| Bind::Texture(field));
+        let inputs = [sigma_t, Bind::Texture(&sources.field), moments];
+        let field = self.field("what cells scatter", dims)?;
+        self.dispatch("scattered", &self.params, &inputs, &field, self.problem.layers(dims))?;
+        Ok(field)
+    }
+
+    /// The moments that a camera sees.
+    fn with_uncollided(&self, last: &Bounced) -> Result<Texture, NodeError> {
+        let dims = self.medium.lattice.dims;
+        let params = BounceParams { coarser: last.coarser, ..self.params };
+        let sampler = self.run.gpu.linear_sampler();
+        let inputs =
+            [Bind::Sampler(&sampler), Bind::Texture(&last.uncollided), Bind::Texture(&last.residual.moments)];
+        let moments = self.field("moments", dims)?;
+        self.dispatch("add_uncollided", &params, &inputs, &moments, self.problem.layers(dims))?;
+        Ok(moments)
+    }
+
+    fn field(&self, what: &str, dims: [usize; 3]) -> Result<Texture, NodeError> {
+        Ok(self.run.gpu.texture3(what, self.problem.layers(dims), Format::Rgba32Float, REMEDY)?)
+    }
+
+    fn dispatch(
+        &self,
+        stage: &str,
+        params: &BounceParams,
+        inputs: &[Bind],
+        output: &Texture,
+        threads: [usize; 3],
+    ) -> Result<(), NodeError> {
+        let gpu = self.run.gpu;
+        let stage = gpu.stage(&format!("isotropic_residual/{stage}"), &[])?;
+        let mut recorder = gpu.recorder("light straight from surfaces");
+        recorder.dispatch(&stage.bind(gpu, params, inputs, &[Bind::Texture(output)]), threads);
+        self.run.finish(recorder)
+    }
 }
 
 /// How many of the lattice's cells one that looks for patches stands for, along an axis.
-fn coarser(dims: [usize; 3]) -> usize {
+fn coarser(dims: [usize; 3], most: usize) -> usize {
     let mut coarser = 1;
     while dims.iter().all(|n| n % (2 * coarser) == 0)
-        && dims.iter().map(|n| n / coarser).product::<usize>() > LIT_CELLS
+        && dims.iter().map(|n| n / coarser).product::<usize>() > most
     {
         coarser *= 2;
     }

@@ -128,6 +128,6 @@ fn corners_move_off_the_edges() {
 fn layouts_are_those_of_the_shaders() {
     assert_layout::<LookupParams>("lookup.wgsl", "LookupParams", &[]);
     assert_layout::<Look>("lookup.wgsl", "Look", &[]);
-    let choices = [("pack", "1"), ("narrow", "true")];
+    let choices = [("pack", "1"), ("narrow", "true"), ("directions", "16"), ("channels", "1")];
     assert_layout::<SurfacePoint>("isotropic_residual/surface_light.wgsl", "SurfacePoint", &choices);
 }

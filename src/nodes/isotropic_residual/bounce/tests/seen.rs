@@ -100,7 +100,8 @@ fn no_light_counts_twice_in_a_ball() {
     let (black, grey) = (mean(0.0), mean(0.6));
     // Light that nothing scatters is narrow: of the rest there is some, and less than all.
     assert!(black > 0.05 && black < 1.0, "{black}");
-    // As for phi inside: the ball's flat triangles (2 %) of unequal areas, and its near side (1 %).
+    // As for phi inside: the ball's flat triangles (2 %) of unequal areas, and its near side (1 %); 16
+    // directions see the medium 1 % too bright. Were light from patches counted twice, this were 13 % more.
     let expected = 0.6 * 1.6;
-    assert!(((grey - black) / expected - 1.0).abs() < 0.03, "{} against {expected}", grey - black);
+    assert!(((grey - black) / expected - 1.0).abs() < 0.05, "{} against {expected}", grey - black);
 }
