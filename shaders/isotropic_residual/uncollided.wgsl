@@ -1,4 +1,5 @@
-// A thread: phi and F [W/m2] in one cell of what comes straight from surfaces, from 32 directions, all channels.
+// A thread: phi and F [W/m2] in one cell of what comes straight from surfaces, from 32 directions, all channels,
+// less the ambient light from behind them: the solver lets that in everywhere.
 
 #import "isotropic_residual/bounce.wgsl"
 #import "lib/block.wgsl"
@@ -50,10 +51,14 @@ fn isotropic_residual_uncollided(@builtin(global_invocation_id) id: vec3u) {
         let towards = vec3f(sqrt(1.0 - z * z) * vec2f(cos(angle), sin(angle)), z);
         let hit = nearest_surface(p, towards, 1e30);
         if hit.triangle != NO_SURFACE {
-            let radiance = patch_radiance(hit.triangle, p + hit.t * towards, towards);
+            let at = p + hit.t * towards;
+            let radiance = patch_radiance(hit.triangle, at, towards);
             let tau = walk(sigma_t, linear_clamp, params.shape, level.cell_m, p, towards, hit.t);
+            let beyond = walk(sigma_t, linear_clamp, params.shape, level.cell_m, at, towards, 1e30);
             for (var c = 0u; c < level.n_channels; c += 1u) {
-                sums[c] += WEIGHT * radiance[c] * exp(-level.channels[c].k * tau) * vec4f(1.0, -towards);
+                let channel = level.channels[c];
+                let hidden = channel.inflow * exp(-channel.k * beyond);
+                sums[c] += WEIGHT * (radiance[c] - hidden) * exp(-channel.k * tau) * vec4f(1.0, -towards);
             }
         }
     }

@@ -5,10 +5,12 @@
 //! medium scatters, other patches and ambient light. From cells near matter 32 rays look for patches: their
 //! (phi, F) is the first-collision source Q0 += sigma_s* phi, Q1 += sigma_s* g* F of another solve, and is
 //! added to the field that the camera reads. Twice: what comes back once more lights the patches again.
+//! Ambient light enters the solver past surfaces: what they hide of it is taken off the same rays, so that
+//! (phi, F) straight from surfaces may be negative. With the ambient light that is in the solver's it is not.
 //! In the end E is computed once more, from 64 directions, at the corners of the patches and without narrow
 //! beams: what a camera finds on surfaces that it sees.
 //!
-//! Limits: surfaces do not block the lines of the solver; the light of patches is as coarse as they are (at
+//! Limits: what the medium has scattered passes through surfaces inside of it; the light of patches is as coarse as they are (at
 //! least two cells, 2^14 of them on all surfaces), and is gathered on at most 2^16 cells. Tested by the closed
 //! forms of planes in a void and in a thin medium, and by what a closed ball must hold.
 

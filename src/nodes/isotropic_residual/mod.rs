@@ -35,7 +35,7 @@ static SPEC: NodeSpec = NodeSpec {
     purpose: "Multiple scattering: light that has lost its direction, as one lobe a cell.",
     doc: "Solves for all light that has been scattered out of the beams or is emitted, by sweeps along lines of the grid from coarse to fine. \
           One channel where the medium is grey and all light has one color, three otherwise. Surfaces are lit by beams, by the \
-          medium and by each other, and send light back, twice; they do not block the lines of the sweeps.",
+          medium and by each other, hide ambient light, and send light back, twice; scattered light passes through those inside.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "where the light scatters"),
         PortSpec::new("beams", PortType::Beams, "the light that enters; without it, only what the medium emits").many().optional(),

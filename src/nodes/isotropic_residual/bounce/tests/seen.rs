@@ -2,7 +2,7 @@
 
 use std::f64::consts::PI;
 
-use glam::Vec3;
+use glam::{DVec4, Vec3};
 
 use super::super::cuts::tests::{Look, look_up};
 use super::*;
@@ -104,4 +104,69 @@ fn no_light_counts_twice_in_a_ball() {
     // directions see the medium 1 % too bright. Were light from patches counted twice, this were 13 % more.
     let expected = 0.6 * 1.6;
     assert!(((grey - black) / expected - 1.0).abs() < 0.05, "{} against {expected}", grey - black);
+}
+
+/// phi and F of the cells above a floor in a sky of 1 W/(m2 sr), and E on the floor's upper side.
+fn under_sky(gpu: &Gpu, scene: &Scene, reflectance: f64) -> (Vec<DVec4>, f64) {
+    let medium = scene.medium(gpu);
+    let corner = |x: f64, y: f64| DVec3::new(400.0 * x, 400.0 * y, -2.3);
+    let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    let floor = mesh(&scene.lattice(), &[[a, b, c], [a, c, d]], [reflectance; 3]);
+    let floor = Value::new::<Mesh>(PortType::Surface, 0, floor);
+    let beams = scene.propagate_behind(gpu, &medium, &[], [1.0; 3], &[&floor]);
+    let inputs = [("medium", &medium), ("beams", &beams), ("surfaces", &floor)];
+    let residual = output(gpu, "isotropic_residual", json!({ "quality": "reference" }), &inputs);
+    let state = states(gpu, &residual).remove(0).data;
+    let looks: Looks = &|_| vec![(Vec3::new(1.0, 1.0, -2.3), 0, Vec3::NEG_Z)];
+    (state, seen(gpu, &medium, &beams, &floor, looks)[0][0])
+}
+
+#[test]
+fn a_black_floor_hides_the_sky_below() {
+    // Of phi = 4 pi L one half is left, and F is that from above: pi L downwards.
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { albedo: [1.0; 3], g: 0.0, ..Scene::new([6, 5, 4], Filling::Homogeneous, 1e-4) };
+    let (state, irradiance) = under_sky(gpu, &scene, 0.0);
+    for light in state {
+        assert_close("phi, F", &[light.x, light.w], &[2.0 * PI, -PI], 1e-3, 2e-3);
+        // The half of 32 directions the golden angle apart leaves 5 % of the flux to the sides.
+        assert_close("F to the sides", &[light.y, light.z], &[0.0; 2], 0.0, 0.06 * PI + 2e-3);
+    }
+    assert_close("E", &[irradiance], &[PI], 1e-3, 0.0);
+}
+
+#[test]
+fn a_white_floor_is_as_bright_as_the_sky() {
+    // Where nothing is lost radiance is that of the sky everywhere, whatever the medium's depth.
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { albedo: [1.0; 3], g: 0.3, ..Scene::new([8, 8, 8], Filling::Random, 3.0) };
+    let (state, irradiance) = under_sky(gpu, &scene, 1.0);
+    for light in state {
+        assert_close("phi, F", &light.to_array(), &[4.0 * PI, 0.0, 0.0, 0.0], 0.0, 0.01 * 4.0 * PI);
+    }
+    assert_close("E", &[irradiance], &[PI], 0.01, 0.0);
+}
+
+#[test]
+fn a_plate_inside_hides_what_the_medium_left_of_the_sky() {
+    // In the middle of a medium that only absorbs, a black plate below a cell takes half of its light: that of
+    // the sky through the other half of the medium, not the sky's own.
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene { albedo: [0.0; 3], g: 0.0, ..Scene::new([9, 9, 9], Filling::Homogeneous, 0.3) };
+    let medium = scene.medium(gpu);
+    let phi = |surfaces: &[&Value]| {
+        let beams = scene.propagate_behind(gpu, &medium, &[], [1.0; 3], surfaces);
+        let mut inputs = vec![("medium", &medium), ("beams", &beams)];
+        inputs.extend(surfaces.iter().map(|surface| ("surfaces", *surface)));
+        let params = json!({ "quality": "reference", "directions": 50 });
+        let residual = output(gpu, "isotropic_residual", params, &inputs);
+        states(gpu, &residual)[0].data[4 + 9 * (4 + 9 * 4)].x
+    };
+    let corners = [(-900.0, -900.0), (900.0, -900.0), (0.0, 900.0)].map(|(x, y)| DVec3::new(x, y, 3.99));
+    let plate = Value::new::<Mesh>(PortType::Surface, 0, mesh(&scene.lattice(), &[corners], [0.0; 3]));
+    let (open, half) = (phi(&[]), phi(&[&plate]));
+    // Rays see a medium that fades over its outermost cells, the solver one that ends in steps: up to 0.04 in
+    // depth, and 32 directions here are 50 there. Were the medium not in the way, a quarter were left.
+    assert!((half / open - 0.5).abs() < 0.04, "{half} of {open}");
+    assert!(open < 0.8 * 4.0 * PI);
 }
