@@ -1,4 +1,4 @@
-//! Makes the samples in `data/`: a cumulus, and a sky with and without its sun.
+//! Makes the samples in `data/`: a cumulus, a fire, and a sky with and without its sun.
 //!
 //! `cargo run --example make_samples [FOLDER]` writes into `data/` unless told otherwise. The cloud is the
 //! one of [`tyndall::volume::shapes`]. The sky is Preetham, Shirley and Smits, "A practical analytic model
@@ -9,6 +9,9 @@
 //! Units: 1 is 10 kcd/m² in the maps, so 10 klx in an irradiance, linear Rec. 709. Values are rounded to
 //! 16 bits, which halves the files. Limits: ozone and water vapor, which redden the beam by a few percent,
 //! are left out, and chroma outside of Rec. 709 is clipped. `tests/graphs.rs` reads what this wrote.
+
+#[path = "make_samples/fire.rs"]
+mod fire;
 
 use std::f64::consts::PI;
 use std::path::Path;
@@ -35,6 +38,11 @@ fn main() -> anyhow::Result<()> {
     let folder = Path::new(&folder);
     std::fs::create_dir_all(folder)?;
     cumulus(&folder.join("cumulus.vdb"))?;
+    vdb::write(
+        &folder.join("fire.vdb"),
+        &fire::grids(),
+        WriteOptions { compression: WriteCompression::Zip, half: true },
+    )?;
     let sky = Sky::new();
     image::exr::write(&folder.join("sky.exr"), &sky.map(false))?;
     image::exr::write(&folder.join("sky_sun.exr"), &sky.map(true))?;
