@@ -96,6 +96,7 @@ struct Pixel {
 @group(1) @binding(14) var blackbodies: texture_2d<f32>;
 @group(1) @binding(15) var<storage, read> surface_light: array<vec4f>;
 @group(1) @binding(16) var<storage, read> surface_grids: array<vec2u>;
+@group(1) @binding(17) var star: texture_3d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Where less than this is left of a ray it ends.
@@ -117,6 +118,7 @@ const HAS_STACK: bool = {stack};
 const HAS_SURFACES: bool = {surfaces};
 const HAS_GATHERED: bool = {gathered};
 const HAS_SHADOWS: bool = {shadows};
+const HAS_WIDENING: bool = {widening};
 const HAS_EMISSION: bool = {emission};
 
 // A number where it is known when the shader is compiled: what is the same along the ray is then computed once.

@@ -1,7 +1,8 @@
 //! What importance is for: fewer ordinates for a picture of the same error, where matter scatters forward.
 //!
 //! A cloud of 16 optical depths in front of real skies, against the picture of 256 ordinates; all with the
-//! spread of regions. The skies lie outside of the repository; where they are absent that is said.
+//! spread of regions, and all forward light theirs: with the window of `prefilter` as it is the stack brings it
+//! (aristea_wreck 0.107 to 0.029 without importance) and importance only another quarter. The skies lie outside of the repository; where they are absent that is said.
 
 mod common;
 
@@ -15,7 +16,7 @@ const GRAPH: &str = r#"{ "tyndall": 1, "nodes": {
     "sky": { "type": "environment", "path": "SKY" },
     "importance": { "type": "importance_propagation", "strength": STRENGTH },
     "split": { "type": "light_decomposition", "count": COUNT },
-    "prefilter": { "type": "prefilter" },
+    "prefilter": { "type": "prefilter", "window_deg": [0.01, 0.02] },
     "beams": { "type": "principal_propagation" },
     "residual": { "type": "isotropic_residual" },
     "camera": { "type": "camera", "position": [2.5, 0.8, 4], "fov_y_deg": 38, "width": 48, "height": 48 },

@@ -22,6 +22,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("surfaces", SWITCH),
     ("shadows", SWITCH),
     ("gathered", SWITCH),
+    ("widening", SWITCH),
     ("narrow", SWITCH),
     ("emission", SWITCH),
     ("directions", &["16", "64"]),

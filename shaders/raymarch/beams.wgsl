@@ -50,12 +50,23 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
         let origin = vec3f(pack_origin(first / PACK, corners, params.packs_per_column));
         var depths = vec4f(0.0);
         var share = vec4f(1.0);
+        // Of light that counts as not scattered, where it spreads as it goes.
+        var stars = vec4f(0.0);
+        var star_share = vec4f(1.0);
         if HAS_SHADOWS {
             let lit = lit_between(tau, vec3u(origin), corners, p + 0.5);
             depths = lit.tau;
             share = lit.share;
+            if HAS_WIDENING {
+                let lit_star = lit_between(star, vec3u(origin), corners, p + 0.5);
+                stars = lit_star.tau;
+                star_share = lit_star.share;
+            }
         } else {
             depths = textureSampleLevel(tau, linear_clamp, (origin + inside) / tau_size, 0.0);
+            if HAS_WIDENING {
+                stars = textureSampleLevel(star, linear_clamp, (origin + inside) / tau_size, 0.0);
+            }
         }
         for (var m = 0u; m < min(PACK, n_beams() - first); m += 1u) {
             let beam = beams[first + m];
@@ -77,12 +88,17 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
                 tau_n = params.shape.sigma_t * max(0.0, min(way.y, reach) - way.x) * params.cell_m;
             }
             let mu = clamp(-dot(travel, direction), -1.0, 1.0);
-            power *= share[m];
-            let unscattered = segment.sharp * exp(-tau_n);
+            let unscattered = share[m] * segment.sharp * exp(-tau_n);
+            // E* over E_n, and the depth that K is for.
+            var reaching = share[m] * exp(-k * tau_n);
+            if HAS_WIDENING {
+                reaching = star_share[m] * exp(-k * stars[m]);
+                tau_n = select(stars[m], tau_n, share[m] > 0.0);
+            }
             var phase = henyey_greenstein(mu, params.g * beam.power.w);
             if HAS_PEAK {
                 let column = (PEAK_SIZE.x - 1.0) * sqrt(sqrt(0.5 - 0.5 * mu));
-                let deflected = max(segment.reach * exp(-k * tau_n) - unscattered, Spectrum(0.0));
+                let deflected = max(segment.reach * reaching - unscattered, Spectrum(0.0));
                 var peak_phase = peak_of(albedo * (tau_n + segment.tau_c), column);
                 if HAS_WINDOW {
                     let part = saturate((mu - beam.window.y) / max(beam.window.x - beam.window.y, 1e-6));

@@ -40,17 +40,17 @@ fn a_device_that_is_lost_stays_lost() {
 fn every_buffer_is_counted() {
     let Some(gpu) = fresh() else { return };
     let field = gpu.texture3("field", [64; 3], Format::R32Float, "").unwrap();
-    let blocks = gpu.texture3("blocks", [8; 3], Format::R32Float, "").unwrap();
+    let copied = gpu.texture3("copied", [8; 3], Format::Rgba32Float, "").unwrap();
     let held = gpu.bytes_now();
     gpu.take_peak_bytes();
     // Rows of 256 bytes need no padding, so the field is read through as many bytes as it has.
     gpu.read_texture::<f32>(&field).unwrap();
     assert_eq!(gpu.take_peak_bytes(), held + field.bytes());
     assert_eq!(gpu.bytes_now(), held);
-    let stage = gpu.stage("occupancy", &[]).unwrap();
-    let bound = stage.bind(&gpu, &[8_u32, 8, 8, 0], &[Bind::Texture(&field)], &[Bind::Texture(&blocks)]);
+    let stage = gpu.stage("copy", &[]).unwrap();
+    let bound = stage.bind(&gpu, &[8_u32, 8, 8, 0], &[Bind::Texture(&field)], &[Bind::Texture(&copied)]);
     assert_eq!(gpu.bytes_now(), held + 16);
-    let mut recorder = gpu.recorder("occupancy");
+    let mut recorder = gpu.recorder("copy");
     recorder.dispatch(&bound, [8; 3]);
     recorder.finish().unwrap();
     drop(bound);

@@ -35,7 +35,7 @@ fn graphs_that_are_none() {
     refused(
         "two.json",
         "two.json: node 'medium': unknown parameter 'colour'; allowed are density, density_scale, albedo, g, \
-         max_resolution, max_cells\n\
+         max_resolution, max_cells, emission, kelvin_per_unit, kelvin_offset, emission_scale, reference_kelvin\n\
          two.json: node 'medium': g = 1 is outside -1 < value < 1; the default is 0\n",
     );
     assert!(!desk.path("out").exists());
@@ -64,7 +64,8 @@ fn parameters_that_are_not_allowed() {
     refused(
         "medium.albdo=1",
         "cannot set 'medium.albdo': unknown parameter 'albdo'; did you mean 'albedo'? allowed are density, \
-         density_scale, albedo, g, max_resolution, max_cells",
+         density_scale, albedo, g, max_resolution, max_cells, emission, kelvin_per_unit, kelvin_offset, \
+         emission_scale, reference_kelvin",
     );
     refused("medium.g", "--set 'medium.g' has no value; write node.parameter=value");
     refused("g=1", "'g' names no parameter; write node.parameter=value");

@@ -163,6 +163,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         blackbodies,
         light,
         grids,
+        Bind::Texture(&beams.star().texture),
     ];
 
     let stage = gpu.stage("raymarch", &choices(medium, &beams, residual, &backdrop, &surfaces, channels))?;
@@ -202,7 +203,7 @@ fn choices(
     backdrop: &Backdrop,
     surfaces: &Surfaces,
     channels: Channels,
-) -> [(&'static str, String); 13] {
+) -> [(&'static str, String); 14] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
     let window = beams.beams.iter().any(|beam| beam.window.is_some());
     let gathered = residual.and_then(|residual| residual.surface_light.as_ref());
@@ -222,6 +223,7 @@ fn choices(
         ("surfaces", (!surfaces.is_empty()).to_string()),
         ("shadows", beams.has_shadows.to_string()),
         ("gathered", gathered.is_some().to_string()),
+        ("widening", beams.peak.is_some().to_string()),
         ("emission", medium.emission.is_some().to_string()),
         ("n_beams", n_beams),
         pack,
