@@ -6,23 +6,23 @@
 //! as much in every step, so that tongues end sharply; heat, which burning keeps up and radiation takes as the
 //! fourth power; and soot, which is made where burning ends. The floor is solid, all other sides are open.
 //!
-//! Units: cells and steps; the grids that are made have cells of 3.6 cm. Deterministic.
+//! Units: cells and steps; the grids that are made have cells of 2.7 cm. Deterministic.
 
 use glam::{DMat4, DVec3, IVec3, Vec3};
 use rayon::prelude::*;
 use tyndall::volume::grid::Grid;
 
-const DIMS: [usize; 3] = [48, 88, 48];
-const CELL_M: f64 = 0.036;
-const STEPS: usize = 105;
+const DIMS: [usize; 3] = [64, 112, 64];
+const CELL_M: f64 = 0.027;
+const STEPS: usize = 135;
 const PRESSURE_SWEEPS: usize = 30;
-const BUOYANCY: f32 = 0.16;
-const CONFINEMENT: f32 = 0.42;
+const BUOYANCY: f32 = 0.12;
+const CONFINEMENT: f32 = 0.26;
 /// Part of the flame that burns in a step.
-const BURN: f32 = 0.0125;
-const COOLING: f32 = 0.03;
-const SOOT: f32 = 0.03;
-const SOURCE_RADIUS: f32 = 8.5;
+const BURN: f32 = 0.0095;
+const COOLING: f32 = 0.022;
+const SOOT: f32 = 0.022;
+const SOURCE_RADIUS: f32 = 10.5;
 
 type Cells = Vec<f32>;
 
@@ -59,10 +59,12 @@ pub fn grids() -> Vec<Grid> {
         let kept: Cells = cells.iter().map(|&value| if value < least { 0.0 } else { value }).collect();
         Grid::from_dense(name, 0.0, map, IVec3::ZERO, DIMS, &kept)
     };
+    // Flames fade out, though what burns ends sharply.
+    let flame = fire.flame.iter().map(|&flame| smoothstep(flame)).collect();
     vec![
         grid("density", &fire.soot, 0.01),
         grid("temperature", &fire.heat, 0.05),
-        grid("flame", &fire.flame, 0.01),
+        grid("flame", &flame, 0.004),
     ]
 }
 
@@ -99,6 +101,12 @@ fn place(x: usize, y: usize, z: usize) -> Vec3 {
     Vec3::new(x as f32, y as f32, z as f32)
 }
 
+/// From 0 to 1 without corners.
+fn smoothstep(t: f32) -> f32 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
 /// Waves in the plane that never repeat, -1..1.
 fn waves(x: f32, z: f32, t: f32) -> f32 {
     let one = |a: f32, b: f32, c: f32, d: f32| (a * x + b * z + c * t + d).sin();
@@ -114,17 +122,15 @@ impl Fire {
             for y in 1..5 {
                 for x in 0..DIMS[0] {
                     let (dx, dz) = (x as f32 - center[0], z as f32 - center[1]);
-                    let reach = SOURCE_RADIUS * (1.0 + 0.5 * waves(1.4 * dx, 1.4 * dz, 0.8 * t));
-                    if (dx * dx + dz * dz).sqrt() > reach {
-                        continue;
-                    }
-                    let strength = (0.65 + waves(1.6 * dx, 1.6 * dz, 1.5 * t)).clamp(0.0, 1.0);
+                    let reach = SOURCE_RADIUS * (1.0 + 0.5 * waves(1.1 * dx, 1.1 * dz, 0.6 * t));
+                    let edge = smoothstep((reach - (dx * dx + dz * dz).sqrt()) / 4.0);
+                    let strength = edge * (0.7 + waves(1.2 * dx, 1.2 * dz, 1.1 * t)).clamp(0.0, 1.0);
                     let at = idx(x, y, z);
                     self.flame[at] = self.flame[at].max(strength);
                     self.heat[at] = self.heat[at].max(strength);
                     self.flow[1][at] = self.flow[1][at].max(0.8 * strength);
-                    self.flow[0][at] += 0.07 * waves(dz, dx, 1.7 * t);
-                    self.flow[2][at] += 0.07 * waves(dx + 40.0, dz, 1.7 * t);
+                    self.flow[0][at] += 0.07 * edge * waves(dz, dx, 1.3 * t);
+                    self.flow[2][at] += 0.07 * edge * waves(dx + 40.0, dz, 1.3 * t);
                 }
             }
         }
@@ -139,8 +145,8 @@ impl Fire {
         fields.for_each(|(((flame, heat), soot), burnt)| {
             let is_alight = *flame > 0.0;
             *flame = (*flame - BURN).max(0.0);
-            *heat -= COOLING * heat.powi(4) + if is_alight { 0.0 } else { 0.02 * *heat };
-            *soot = (*soot + SOOT * burnt / BURN) * 0.997;
+            *heat -= COOLING * heat.powi(4) + if is_alight { 0.0 } else { 0.015 * *heat };
+            *soot = (*soot + SOOT * burnt / BURN) * 0.998;
         });
     }
 
