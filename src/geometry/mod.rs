@@ -19,7 +19,7 @@ use glam::{DMat4, DVec3};
 /// Triangles with one reflectance.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mesh {
-    /// Corners in the world [m].
+    /// Corners in the world in meters.
     pub positions: Vec<DVec3>,
     /// Three positions each; every one has an area.
     pub triangles: Vec<[u32; 3]>,
@@ -118,7 +118,7 @@ fn bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
     std::fs::read(path).map_err(|source| MeshError::Io { path: path.to_owned(), source })
 }
 
-/// Corners further than this from the origin are a mistake of units [m].
+/// Corners further than this from the origin are a mistake of units in meters.
 const FARTHEST_M: f64 = 1e9;
 
 impl Mesh {

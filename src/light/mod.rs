@@ -50,9 +50,9 @@ pub struct Ordinate {
 /// scattered by less than `inner_deg` is the stack's, none of what is scattered by more than `outer_deg`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// Where the ordinates' share begins [deg].
+    /// Where the ordinates' share begins in degrees.
     pub inner_deg: f64,
-    /// Where the stack's share ends [deg].
+    /// Where the stack's share ends in degrees.
     pub outer_deg: f64,
 }
 
