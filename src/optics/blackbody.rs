@@ -28,7 +28,7 @@ const RGB_FROM_XYZ: [[f64; 3]; 3] = [
 /// Hotter is no brighter: sums stay numbers.
 const HOTTEST: f64 = 1e100;
 
-/// The temperature in the middle of the table [K]; `KNEE` of `lib/emission.wgsl`.
+/// The temperature in the middle of the table, in kelvin; `KNEE` of `lib/emission.wgsl`.
 pub const KNEE: f64 = 2000.0;
 
 /// Entries of the table.

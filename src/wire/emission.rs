@@ -29,11 +29,11 @@ mirror! {
         flame_from_index: [[f32; 4]; 3],
         /// The same of the temperature.
         temperature_from_index: [[f32; 4]; 3],
-        /// Temperature of the value 0 [K].
+        /// Temperature of the value 0, in kelvin.
         kelvin_offset: f32,
         /// Kelvin a unit.
         kelvin_per_unit: f32,
-        /// In the middle of the table of black bodies [K].
+        /// In the middle of the table of black bodies, in kelvin.
         knee: f32,
         /// Unused.
         pad: u32,

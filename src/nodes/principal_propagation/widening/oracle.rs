@@ -160,7 +160,7 @@ mod tests {
         let widened = widening.propagate(&sigma_t, ALL);
         let mut tau = 0.0;
         for z in 0..=10 {
-            let expected = (-0.19 * tau).exp();
+            let expected = (-0.19_f64 * tau).exp();
             assert!((widened.star.at([30, 30, z]) / expected - 1.0).abs() < 1e-8, "{z}");
             assert!((widened.straight.at([30, 30, z]) / expected - 1.0).abs() < 1e-14, "{z}");
             tau += 0.1 * (2.0 + z as f64);
