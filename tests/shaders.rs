@@ -26,6 +26,9 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("narrow", SWITCH),
     ("emission", SWITCH),
     ("directions", &["16", "64"]),
+    ("least_anisotropy", &["0.1"]),
+    ("least_share", &["1e-5"]),
+    ("least_power", &["1e-30"]),
 ];
 
 /// Ways to fill in the names that the text asks for: all products of those with many values; of those that are
