@@ -1,13 +1,14 @@
 // A thread: the optical depth of one camera ray through the whole medium, rays on an even grid over the
 // picture.
 
+#import "lib/view.wgsl"
 #import "lib/walk.wgsl"
 
 struct ViewParams {
     shape: Shape,
     eye: vec3f,
     cell_m: f32,
-    // The view vector of a ray: forward + x right + y up, x and y in -1..=1; all in index space.
+    // The view, in index space: lib/view.wgsl.
     forward: vec3f,
     // Rays across and down.
     n_rays: u32,
@@ -29,6 +30,6 @@ fn importance_propagation(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let at = (vec2f(id.xy) + 0.5) / f32(n);
-    let direction = normalize(params.forward + (2.0 * at.x - 1.0) * params.right + (1.0 - 2.0 * at.y) * params.up);
+    let direction = view_ray(params.forward, params.right, params.up, at);
     depths[id.y * n + id.x] = walk(sigma_t, linear_clamp, params.shape, params.cell_m, params.eye, direction, 1e30);
 }

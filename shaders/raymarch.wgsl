@@ -6,12 +6,15 @@
 
 #import "lib/spectrum_{channels}.wgsl"
 #import "lib/walk.wgsl"
+#import "lib/view.wgsl"
 #import "lib/block.wgsl"
 #import "lib/beam.wgsl"
+#import "lib/layered.wgsl"
 #import "lib/lobe.wgsl"
 #import "lib/transmittance.wgsl"
 #import "lib/emission.wgsl"
 #import "raymarch/channels_{channels}.wgsl"
+#import "lib/surface_beam.wgsl"
 #import "lib/surface_light.wgsl"
 #import "lib/bvh.wgsl"
 #import "lib/shadow.wgsl"
@@ -24,7 +27,7 @@ struct MarchParams {
     shape: Shape,
     eye: vec3f,
     cell_m: f32,
-    // The view vector of a pixel: forward + x right + y up, x and y in -1..=1.
+    // The view: lib/view.wgsl.
     forward: vec3f,
     step: f32,
     right: vec3f,
@@ -139,11 +142,7 @@ struct Layers {
 
 // The residual lobe's radiance per unit of sigma_s*, towards the camera.
 fn residual_radiance(p: vec3f, view: vec3f, c: u32) -> f32 {
-    let size = vec3f(textureDimensions(moments));
-    let layer = f32(params.dims.z);
-    var at = p + 0.5;
-    at.z = clamp(at.z, 0.5, layer - 0.5) + f32(c) * layer;
-    let m = textureSampleLevel(moments, linear_clamp, at / size, 0.0);
+    let m = layered(moments, linear_clamp, params.residual_channels, c, p);
     let lobe = lobe_from_moments(m.x, params.g_star * m.yzw);
     let shape = 1.0 - dot(lobe.yzw, view);
     return lobe.x * shape * shape;
@@ -233,7 +232,7 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
     for (var sub = 0u; sub < n * n; sub += 1u) {
         let offset = (vec2f(vec2u(sub % n, sub / n)) + 0.5) / f32(n);
         let at = (vec2f(vec2u(id.x, params.row + id.y)) + offset) / vec2f(f32(params.width), f32(params.height));
-        let direction = normalize(params.forward + (2.0 * at.x - 1.0) * params.right + (1.0 - 2.0 * at.y) * params.up);
+        let direction = view_ray(params.forward, params.right, params.up, at);
         var surface = SurfaceHit(FAR, NO_SURFACE);
         if HAS_SURFACES {
             surface = nearest_surface(params.eye, direction, FAR);

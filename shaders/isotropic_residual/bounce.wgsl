@@ -1,6 +1,7 @@
 // What the stages of surfaces' light share.
 
 #import "isotropic_residual/common.wgsl"
+#import "lib/layered.wgsl"
 #import "lib/walk.wgsl"
 
 struct BounceParams {
@@ -12,13 +13,4 @@ struct BounceParams {
     // Edge of the cells that surfaces light, in cells of the level.
     coarser: u32,
     pad: u32,
-}
-
-// Trilinear value of a field whose channels stand along z, at a position in its own cells.
-fn layered(field: texture_3d<f32>, linear_clamp: sampler, n_channels: u32, c: u32, p: vec3f) -> vec4f {
-    let size = vec3f(textureDimensions(field));
-    let layer = size.z / f32(n_channels);
-    // Half a texel from the layer's faces, so that channels do not mix.
-    let z = clamp(p.z + 0.5, 0.5, layer - 0.5) + f32(c) * layer;
-    return textureSampleLevel(field, linear_clamp, vec3f(p.xy + 0.5, z) / size, 0.0);
 }

@@ -6,6 +6,7 @@
 #import "lib/block.wgsl"
 #import "lib/lobe.wgsl"
 #import "lib/patches.wgsl"
+#import "lib/surface_beam.wgsl"
 #import "lib/transmittance.wgsl"
 
 struct SurfacePoint {
@@ -37,25 +38,13 @@ const HAS_NARROW: bool = {narrow};
 
 // Irradiance of one beam on a side, per channel.
 fn from_beam(beam: Beam, p: vec3f, normal: vec3f) -> vec3f {
-    var to_light = -beam.place.xyz;
-    var reach = FAR;
-    var falloff = 1.0;
-    if beam.place.w > 0.0 {
-        let line = beam.place.xyz - p;
-        reach = max(length(line), SURFACE_GAP);
-        to_light = line / reach;
-        falloff = 1.0 / (reach * reach * params.level.cell_m * params.level.cell_m);
-    }
-    let cosine = dot(normal, to_light);
-    if cosine <= 0.0 || is_occluded(p, to_light, reach) {
-        return vec3f(0.0);
-    }
-    let tau = walk(sigma_t, linear_clamp, params.shape, params.level.cell_m, p, to_light, reach);
+    let level = params.level;
+    let found = arrival(beam, true, sigma_t, linear_clamp, params.shape, level.cell_m, p, normal);
     var k = vec3f(0.0);
     for (var c = 0u; c < N_CHANNELS; c += 1u) {
-        k[c] = params.level.channels[c].k;
+        k[c] = level.channels[c].k;
     }
-    return cosine * falloff * beam.power.xyz * exp(-k * tau);
+    return found.share * beam.power.xyz * exp(-k * found.tau);
 }
 
 // Radiance that arrives from `direction`, per channel.
@@ -113,10 +102,7 @@ fn isotropic_residual_surface_light(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let lit = points[idx / 2u];
-    let corners = surface_triangles[lit.triangle];
-    let ab = corners.b.xyz - corners.a.xyz;
-    let ac = corners.c.xyz - corners.a.xyz;
-    let front = normalize(cross(ab / length(ab), ac / length(ac)));
+    let front = front_normal(lit.triangle);
     let normal = select(front, -front, idx % 2u == 1u);
     var irradiance = vec3f(0.0);
     for (var n = 0u; n < params.n_beams; n += 1u) {

@@ -138,13 +138,18 @@ fn is_occluded(origin: vec3f, direction: vec3f, t_max: f32) -> bool {
     return false;
 }
 
-// Unit normal of a triangle, on the side that a ray of this direction comes from.
-fn surface_normal(triangle: u32, direction: vec3f) -> vec3f {
+// Unit normal of a triangle, on its front side.
+fn front_normal(triangle: u32) -> vec3f {
     let corners = surface_triangles[triangle];
     let ab = corners.b.xyz - corners.a.xyz;
     let ac = corners.c.xyz - corners.a.xyz;
     // Edges of length 1 first, so that areas of small triangles do not vanish.
-    let normal = normalize(cross(ab / length(ab), ac / length(ac)));
+    return normalize(cross(ab / length(ab), ac / length(ac)));
+}
+
+// The normal on the side that a ray of this direction comes from.
+fn surface_normal(triangle: u32, direction: vec3f) -> vec3f {
+    let normal = front_normal(triangle);
     return select(normal, -normal, dot(normal, direction) > 0.0);
 }
 

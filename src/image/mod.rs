@@ -71,6 +71,11 @@ impl Image {
         image
     }
 
+    /// Bytes of all layers.
+    pub fn bytes(&self) -> u64 {
+        self.layers.values().map(|layer| size_of_val(layer.data.as_slice()) as u64).sum()
+    }
+
     /// Adds a layer, or replaces the one of that name.
     ///
     /// # Panics

@@ -104,6 +104,11 @@ impl Lattice {
         }
     }
 
+    /// A vector of the world turned into index space, its length kept: the map's scale is a cell's edge.
+    pub fn turned(&self, v: DVec3) -> DVec3 {
+        self.index_from_world().transform_vector3(v) * self.cell_m
+    }
+
     /// From the world in meters to index coordinates.
     pub fn index_from_world(&self) -> DMat4 {
         self.world_from_index.inverse()

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::LightField;
-use crate::gpu::{Bind, Format, Gpu, GpuError, Recorder, Texture};
+use super::{Channels, LightField};
+use crate::gpu::{Bind, Buffer, Format, Gpu, GpuError, Recorder, Texture};
 use crate::light::Window;
 use crate::mirror;
 use crate::volume::Lattice;
@@ -213,6 +213,17 @@ impl Beams {
             _ => Self::concatenate(gpu, lattice, &lit)?,
         };
         Ok(Self { ambient, fields, ..merged })
+    }
+
+    /// For shaders: the beams with the power of the channels that are solved; one without power where there are
+    /// none.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the device has no room.
+    pub fn list(&self, gpu: &Gpu, channels: &Channels) -> Result<Buffer, GpuError> {
+        let texels: Vec<_> = self.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
+        let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
+        gpu.buffer_from("beams", &texels, "lower light_decomposition.count")
     }
 
     /// Depths of the light that is counted as not scattered.

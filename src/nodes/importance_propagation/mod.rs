@@ -91,13 +91,10 @@ fn ray_direction([forward, right, up]: [DVec3; 3], idx: usize) -> DVec3 {
 /// Optical depths of the rays, row by row.
 fn depths(run: &Run, medium: &Medium, position: DVec3, frame: [DVec3; 3]) -> Result<Vec<f32>, NodeError> {
     let (gpu, lattice) = (run.gpu, &medium.lattice);
-    let index_from_world = lattice.index_from_world();
-    // Directions keep their lengths: the map's scale is a cell's edge.
-    let turned = |v: DVec3| (index_from_world.transform_vector3(v) * lattice.cell_m).as_vec3().to_array();
-    let [forward, right, up] = frame.map(turned);
+    let [forward, right, up] = frame.map(|v| lattice.turned(v).as_vec3().to_array());
     let params = ViewParams {
         shape: medium.shape(),
-        eye: index_from_world.transform_point3(position).as_vec3().to_array(),
+        eye: lattice.index_from_world().transform_point3(position).as_vec3().to_array(),
         cell_m: lattice.cell_m as f32,
         forward,
         n_rays: N_RAYS as u32,

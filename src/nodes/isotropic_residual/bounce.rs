@@ -18,7 +18,7 @@ use std::sync::Arc;
 
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
-use super::sources::{Sources, beam_list, with_sums};
+use super::sources::{Sources, with_sums};
 use super::{Effort, Kind, level, solver};
 use crate::gpu::{Bind, Buffer, Format, Texture};
 use crate::graph::NodeError;
@@ -60,7 +60,7 @@ pub(super) fn solve(
     channels: Channels,
 ) -> Result<Residual, NodeError> {
     let patches = Points::middles(run, surfaces)?;
-    let list = beam_list(run.gpu, beams, &channels)?;
+    let list = beams.list(run.gpu, &channels)?;
     let params = BounceParams {
         level: problem.level(medium.lattice.dims, medium.lattice.cell_m),
         shape: medium.shape(),

@@ -2,7 +2,7 @@
 
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
-use crate::gpu::{Bind, Buffer, Format, Gpu, GpuError, Texture};
+use crate::gpu::{Bind, Buffer, Format, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
 use crate::wire::{Beams, Channels, Emission, Medium};
@@ -37,7 +37,7 @@ pub(super) fn sources(
     let level = problem.level(dims, medium.lattice.cell_m);
     let layers = problem.layers(dims);
     let field = gpu.texture3("sources", layers, Format::Rgba32Float, REMEDY)?;
-    let list = beam_list(gpu, beams, channels)?;
+    let list = beams.list(gpu, channels)?;
     let params = SourceParams {
         level,
         n_beams: beams.beams.len() as u32,
@@ -59,13 +59,6 @@ pub(super) fn sources(
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
     run.finish(recorder)?;
     with_sums(run, problem, &level, field)
-}
-
-/// Beams with the power of the channels that are solved; one without power where there are none.
-pub(super) fn beam_list(gpu: &Gpu, beams: &Beams, channels: &Channels) -> Result<Buffer, GpuError> {
-    let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
-    let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
-    gpu.buffer_from("beams", &texels, "lower light_decomposition.count")
 }
 
 /// A field of sources with its powers.

@@ -12,7 +12,6 @@ use crate::camera::Camera;
 use crate::geometry::Mesh;
 use crate::gpu::{Bind, Format, Gpu, GpuError, Texture};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
-use crate::image::Image;
 use crate::light::environment::STACK_X;
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
@@ -135,9 +134,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let channels = common_channels(Channels::of(medium, &beams), residual);
     let emission = Emission::or_none(medium.emission.as_ref(), gpu)?;
     let params = params(run, medium, camera, &beams, residual, &backdrop, channels)?;
-    let texels: Vec<_> = beams.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
-    let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
-    let list = gpu.buffer_from("beams", &texels, "lower light_decomposition.count")?;
+    let list = beams.list(gpu, &channels)?;
     let dark = gpu.texture3("no residual", [1; 3], Format::Rgba32Float, "")?;
     let moments = residual.map_or(&dark, |residual| &residual.moments);
     let table = peak_texture(gpu, medium.g)?;
@@ -191,8 +188,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         all.extend_from_slice(read);
     }
     let image = layers::image(camera.width, camera.height, &all);
-    let bytes = image.layers.values().map(|layer| size_of_val(layer.data.as_slice()) as u64).sum();
-    Ok(vec![Value::new::<Image>(PortType::Image, bytes, image)])
+    Ok(vec![Value::new(PortType::Image, image.bytes(), image)])
 }
 
 /// What the shader is compiled for.
@@ -249,10 +245,8 @@ fn params(
 ) -> Result<MarchParams, NodeError> {
     let lattice = &medium.lattice;
     let index_from_world = lattice.index_from_world();
-    // Directions keep their lengths: the map's scale is a cell's edge.
-    let turned =
-        |v: glam::DVec3| (index_from_world.transform_vector3(v) * lattice.cell_m).as_vec3().to_array();
-    let [forward, right, up] = camera.frame().map_err(NodeError::new)?;
+    let [forward, right, up] =
+        camera.frame().map_err(NodeError::new)?.map(|v| lattice.turned(v).as_vec3().to_array());
     let scaled = medium.albedo.map(|albedo| DeltaScaled::new(albedo, medium.g));
     let four = |v: [f64; 3]| [v[0] as f32, v[1] as f32, v[2] as f32, 0.0];
     let residual_color = residual.map_or([0.0; 3], |residual| match channels.count {
@@ -264,11 +258,11 @@ fn params(
         shape: medium.shape(),
         eye: index_from_world.transform_point3(camera.position).as_vec3().to_array(),
         cell_m: lattice.cell_m as f32,
-        forward: turned(forward),
+        forward,
         step: run.params.f64("step") as f32,
-        right: turned(right),
+        right,
         g: medium.g as f32,
-        up: turned(up),
+        up,
         g_star: scaled[0].g_star as f32,
         k: four(scaled.map(|s| s.k)),
         albedo: four(medium.albedo),

@@ -77,8 +77,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     mapped.truncate(picture.beauty().len());
     let mut image = picture.clone();
     image.insert(BEAUTY, 3, mapped);
-    let bytes = image.layers.values().map(|layer| size_of_val(layer.data.as_slice()) as u64).sum();
-    Ok(vec![Value::new(PortType::Image, bytes, image)])
+    Ok(vec![Value::new(PortType::Image, image.bytes(), image)])
 }
 
 #[cfg(test)]
