@@ -16,6 +16,7 @@ use tyndall::nodes;
 const SCENES: &[(&str, f64)] = &[
     ("s01_sphere_iso_dir", 0.005),
     ("s05_checker_dir", 0.021),
+    ("s06_checker_fwd_sky", 0.048),
     ("s07_cloud128_thin_mixed", 0.0025),
     ("s08_cloud128_rgb_const", 0.008),
     ("s12_plume_dir", 0.022),

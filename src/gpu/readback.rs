@@ -13,10 +13,10 @@ impl Gpu {
     /// [`GpuError::OutOfMemory`]; [`GpuError::Device`] where the device was lost.
     pub fn read_buffer<T: bytemuck::Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, GpuError> {
         let bytes = buffer.bytes();
-        let raw = self.read_back(bytes, |encoder, staging| {
+        let copy = |encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer| {
             encoder.copy_buffer_to_buffer(&buffer.buffer, 0, staging, 0, bytes);
-        })?;
-        Ok(bytemuck::pod_collect_to_vec(&raw))
+        };
+        self.read_back(bytes, copy, bytemuck::pod_collect_to_vec)
     }
 
     /// The texels of a texture, x fastest.
@@ -28,7 +28,7 @@ impl Gpu {
         let row = nx * texture.format().texel_bytes();
         // Rows of a copy start at multiples of 256 bytes.
         let pitch = row.next_multiple_of(u64::from(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT));
-        let raw = self.read_back(pitch * ny * nz, |encoder, staging| {
+        let copy = |encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer| {
             let layout = wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: Some(pitch as u32),
@@ -39,20 +39,23 @@ impl Gpu {
                 wgpu::TexelCopyBufferInfo { buffer: staging, layout },
                 super::field::extent(texture.dims()),
             );
-        })?;
-        let mut packed = Vec::with_capacity((row * ny * nz) as usize);
-        for line in raw.chunks_exact(pitch as usize) {
-            packed.extend_from_slice(&line[..row as usize]);
-        }
-        Ok(bytemuck::pod_collect_to_vec(&packed))
+        };
+        self.read_back(pitch * ny * nz, copy, |raw| {
+            let mut packed = Vec::with_capacity((row * ny * nz) as usize);
+            for line in raw.chunks_exact(pitch as usize) {
+                packed.extend_from_slice(&line[..row as usize]);
+            }
+            bytemuck::pod_collect_to_vec(&packed)
+        })
     }
 
-    /// What `copy` leaves in a buffer of so many bytes.
-    fn read_back(
+    /// What `take` makes of that which `copy` leaves in a buffer of so many bytes.
+    fn read_back<T>(
         &self,
         bytes: u64,
         copy: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::Buffer),
-    ) -> Result<Vec<u8>, GpuError> {
+        take: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, GpuError> {
         let lost = |error: &dyn std::fmt::Display| GpuError::Device(error.to_string());
         let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
         let staging = self.allocate("read back", bytes, usage, REMEDY)?;
@@ -70,6 +73,6 @@ impl Gpu {
         let mapped = receiver.recv().map_err(|error| lost(&error))?;
         mapped.map_err(|error| lost(&error))?;
         let view = staging.buffer.get_mapped_range(..).map_err(|error| lost(&error))?;
-        Ok(view.to_vec())
+        Ok(take(&view))
     }
 }

@@ -1,6 +1,6 @@
 //! From the shader's pixels to a picture with layers.
 
-use crate::image::{ALPHA, DEPTH, Image};
+use crate::image::{ALPHA, BEAUTY, DEPTH, Image};
 use crate::mirror;
 
 mirror! {
@@ -16,28 +16,60 @@ mirror! {
 }
 
 impl Pixel {
-    /// Whether all of its layers are.
-    pub(super) fn is_finite(&self) -> bool {
+    fn layers(&self) -> [[f32; 4]; 6] {
         [self.beauty, self.single, self.forward, self.residual, self.surface, self.emission]
-            .as_flattened()
-            .iter()
-            .all(|value| value.is_finite())
+    }
+
+    fn is_finite(&self) -> bool {
+        self.layers().as_flattened().iter().all(|value| value.is_finite())
     }
 }
 
-/// The picture of these pixels, row by row.
-pub(super) fn image(width: usize, height: usize, pixels: &[Pixel]) -> Image {
-    let three = |of: fn(&Pixel) -> [f32; 4]| {
-        pixels.iter().map(of).flat_map(|[red, green, blue, _]| [red, green, blue]).collect()
-    };
-    let one = |of: fn(&Pixel) -> f32| pixels.iter().map(of).collect();
-    let mut image = Image::new(width, height, three(|p| p.beauty));
-    image.insert(ALPHA, 1, one(|p| p.beauty[3]));
-    image.insert(DEPTH, 1, one(|p| p.single[3]));
-    image.insert("single", 3, three(|p| p.single));
-    image.insert("forward", 3, three(|p| p.forward));
-    image.insert("residual", 3, three(|p| p.residual));
-    image.insert("surface", 3, three(|p| p.surface));
-    image.insert("emission", 3, three(|p| p.emission));
-    image
+/// Layers with three channels, in the order of [`Pixel::layers`].
+const NAMES: [&str; 6] = [BEAUTY, "single", "forward", "residual", "surface", "emission"];
+
+/// A picture that grows by whole rows.
+pub(super) struct Growing {
+    width: usize,
+    height: usize,
+    colors: [Vec<f32>; 6],
+    alpha: Vec<f32>,
+    depth: Vec<f32>,
+}
+
+impl Growing {
+    pub(super) fn new(width: usize, height: usize) -> Self {
+        let n = width * height;
+        let colors = NAMES.map(|_| Vec::with_capacity(3 * n));
+        Self { width, height, colors, alpha: Vec::with_capacity(n), depth: Vec::with_capacity(n) }
+    }
+
+    /// Adds pixels below; an error tells where one is not finite, x and y.
+    pub(super) fn add(&mut self, pixels: &[Pixel]) -> Result<(), (usize, usize)> {
+        if let Some(idx) = pixels.iter().position(|pixel| !pixel.is_finite()) {
+            let idx = self.alpha.len() + idx;
+            return Err((idx % self.width, idx / self.width));
+        }
+        for pixel in pixels {
+            for (color, [red, green, blue, _]) in self.colors.iter_mut().zip(pixel.layers()) {
+                color.extend_from_slice(&[red, green, blue]);
+            }
+            self.alpha.push(pixel.beauty[3]);
+            self.depth.push(pixel.single[3]);
+        }
+        Ok(())
+    }
+
+    /// The picture, once all rows are there.
+    pub(super) fn finish(self) -> Image {
+        let mut colors = NAMES.into_iter().zip(self.colors);
+        let beauty = colors.next().map(|(_, data)| data).unwrap_or_default();
+        let mut image = Image::new(self.width, self.height, beauty);
+        image.insert(ALPHA, 1, self.alpha);
+        image.insert(DEPTH, 1, self.depth);
+        for (name, data) in colors {
+            image.insert(name, 3, data);
+        }
+        image
+    }
 }

@@ -168,7 +168,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let row_rays = camera.width * (params.n_sub * params.n_sub) as usize;
     let band = (BAND_RAYS / row_rays).clamp(1, camera.height);
     let pixels = gpu.buffer("a band of pixels", (row_bytes * band) as u64, "lower camera.width")?;
-    let mut all = Vec::with_capacity(camera.width * camera.height);
+    let mut picture = layers::Growing::new(camera.width, camera.height);
     for row in (0..camera.height).step_by(band) {
         let n_rows = band.min(camera.height - row);
         let params = MarchParams { row: row as u32, n_rows: n_rows as u32, ..params };
@@ -177,17 +177,13 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         recorder.dispatch(&bound, [camera.width, n_rows, 1]);
         run.finish(recorder)?;
         let read: Vec<layers::Pixel> = gpu.read_buffer(&pixels)?;
-        let read = &read[..camera.width * n_rows];
-        if let Some(idx) = read.iter().position(|pixel| !pixel.is_finite()) {
-            return Err(NodeError::new(format!(
-                "pixel ({}, {}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity, radiance or emission_scale",
-                idx % camera.width,
-                row + idx / camera.width
-            )));
-        }
-        all.extend_from_slice(read);
+        picture.add(&read[..camera.width * n_rows]).map_err(|(x, y)| {
+            NodeError::new(format!(
+                "pixel ({x}, {y}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity, radiance or emission_scale"
+            ))
+        })?;
     }
-    let image = layers::image(camera.width, camera.height, &all);
+    let image = picture.finish();
     Ok(vec![Value::new(PortType::Image, image.bytes(), image)])
 }
 
