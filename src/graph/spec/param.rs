@@ -24,6 +24,8 @@ pub struct ParamSpec {
     pub soft: Option<(f64, f64)>,
     /// What is allowed, for each component.
     pub hard: Limits,
+    /// What the frame does to it.
+    pub timing: Timing,
     /// What its user reads.
     pub doc: &'static str,
 }
@@ -55,6 +57,25 @@ pub enum ParamKind {
     Direction,
     /// An object with these parameters, or null.
     Record(&'static [ParamSpec]),
+}
+
+impl ParamKind {
+    /// Whether `{"keys": …}` may stand for it.
+    pub fn takes_keys(self) -> bool {
+        matches!(self, Self::Float | Self::Vector(_) | Self::Rgb | Self::Direction)
+    }
+}
+
+/// What the frame that is looked at does to a parameter. One that the frame sets chooses files and nothing
+/// else: cache keys hold the identity of the files instead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Timing {
+    /// Nothing, unless it has keys.
+    Own,
+    /// It is the frame, whatever the file says.
+    Frame,
+    /// It is true where a node is looked at for the sake of another frame.
+    Aside,
 }
 
 /// What holds when the file says nothing.
@@ -93,7 +114,8 @@ pub struct Limits {
 
 impl ParamSpec {
     const fn new(name: &'static str, kind: ParamKind, default: Default) -> Self {
-        Self { name, kind, unit: "", default, soft: None, hard: Limits::NONE, doc: "" }
+        let timing = Timing::Own;
+        Self { name, kind, unit: "", default, soft: None, hard: Limits::NONE, timing, doc: "" }
     }
 
     /// A finite number.
@@ -199,6 +221,12 @@ impl ParamSpec {
     pub const fn open(mut self) -> Self {
         self.hard.open_min = true;
         self.hard.open_max = true;
+        self
+    }
+
+    /// What the frame does to it.
+    pub const fn timed(mut self, timing: Timing) -> Self {
+        self.timing = timing;
         self
     }
 

@@ -46,7 +46,7 @@ const LIT_CELLS: [usize; 2] = [1 << 16, 1 << 13];
 /// Directions from which light is gathered: for the camera, and for patches, whose own light is spread
 /// over the medium before it is seen.
 const DIRECTIONS: [usize; 2] = [64, 16];
-/// Threads along x of one dispatch, 65,535 groups of 64; `surface_light.wgsl`.
+/// Threads along x of one dispatch, 65,535 groups of 64, as `surface_light.wgsl` has it.
 const ROW: usize = 4_194_240;
 
 /// Solves for the residual with what surfaces send back.
