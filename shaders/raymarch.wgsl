@@ -98,7 +98,7 @@ struct Pixel {
 @group(1) @binding(13) var temperature: texture_3d<f32>;
 @group(1) @binding(14) var blackbodies: texture_2d<f32>;
 @group(1) @binding(15) var<storage, read> surface_light: array<vec4f>;
-@group(1) @binding(16) var<storage, read> surface_grids: array<vec2u>;
+@group(1) @binding(16) var<storage, read> surface_corners: array<vec4u>;
 @group(1) @binding(17) var star: texture_3d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 

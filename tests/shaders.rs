@@ -30,7 +30,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("widening", SWITCH),
     ("narrow", SWITCH),
     ("emission", SWITCH),
-    ("directions", &["16", "64"]),
+    ("directions", &["4", "16", "64"]),
     ("least_anisotropy", &["0.1"]),
     ("least_share", &["1e-5"]),
     ("least_power", &["1e-30"]),

@@ -5,8 +5,8 @@
 #import "lib/beam.wgsl"
 #import "lib/block.wgsl"
 #import "lib/lobe.wgsl"
-#import "lib/patches.wgsl"
 #import "lib/surface_beam.wgsl"
+#import "lib/surface_light.wgsl"
 #import "lib/transmittance.wgsl"
 
 struct SurfacePoint {
@@ -23,8 +23,8 @@ struct SurfacePoint {
 @group(1) @binding(4) var<storage, read> surface_nodes: array<SurfaceNode>;
 @group(1) @binding(5) var<storage, read> surface_triangles: array<SurfaceTriangle>;
 @group(1) @binding(6) var<storage, read> points: array<SurfacePoint>;
-@group(1) @binding(7) var<storage, read> patch_grids: array<vec2u>;
-@group(1) @binding(8) var<storage, read> patch_irradiances: array<vec4f>;
+@group(1) @binding(7) var<storage, read> surface_corners: array<vec4u>;
+@group(1) @binding(8) var<storage, read> surface_light: array<vec4f>;
 @group(1) @binding(9) var<storage, read> beams: array<Beam>;
 @group(2) @binding(0) var<storage, read_write> irradiances: array<vec4f>;
 
@@ -91,7 +91,7 @@ fn arriving(p: vec3f, direction: vec3f) -> vec3f {
     }
     var beyond = vec3f(level.channels[0].inflow, level.channels[1].inflow, level.channels[2].inflow);
     if hit.triangle != NO_SURFACE {
-        beyond = patch_radiance(hit.triangle, p + hit.t * direction, direction);
+        beyond = returned_radiance(hit.triangle, p + hit.t * direction, direction);
     }
     return radiance + through * beyond;
 }
