@@ -15,6 +15,8 @@ use crate::nodes::oracle_scene::constant_light;
 use crate::volume::field::Field;
 use crate::wire::{Beam, Place, Residual};
 
+mod chain;
+
 /// A scene's residual and picture.
 struct Rendered {
     residual: Value,
