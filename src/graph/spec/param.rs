@@ -329,9 +329,12 @@ impl Limits {
 
 impl fmt::Display for Limits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // 1e28, not its 29 digits.
+        let number = |x: f64| if x.abs() < 1e16 { format!("{x}") } else { format!("{x:e}") };
+        let (min, max) = (self.min.map(number), self.max.map(number));
         let low = if self.open_min { "<" } else { "<=" };
         let high = if self.open_max { "<" } else { "<=" };
-        match (self.min, self.max) {
+        match (min, max) {
             (Some(min), Some(max)) if !self.open_min && !self.open_max => {
                 write!(f, "{min}..={max}")
             }
@@ -370,6 +373,7 @@ mod tests {
         assert_eq!(form(ParamSpec::float("x", 1.0).above(0.0)), "a number, value > 0");
         assert_eq!(form(ParamSpec::float("x", 1.0).at_most(2.5)), "a number, value <= 2.5");
         assert_eq!(form(ParamSpec::float("x", 1.0).below(2.0)), "a number, value < 2");
+        assert_eq!(form(ParamSpec::float("x", 1.0).between(0.0, 1e28)), "a number, 0..=1e28");
         assert_eq!(form(ParamSpec::float("x", 1.0).above(0.0).at_most(1.0)), "a number, 0 < value <= 1");
         assert_eq!(form(ParamSpec::choice("x", KINDS)), "one of sphere, box");
         assert_eq!(form(ParamSpec::int_choice("x", &[0, 8, 14])), "one of 0, 8, 14");
