@@ -104,6 +104,10 @@ fn presets_show_a_medium() {
             let (name, value) = set.split_once('=').unwrap();
             document.set(nodes::catalog(), name, value).unwrap();
         }
+        // Light on surfaces costs as much for a small picture as for a large one, each beam its part.
+        for (_, node) in document.nodes.iter_mut().filter(|(_, node)| node.type_id == "light_decomposition") {
+            node.params.insert("count".to_owned(), 4.into());
+        }
         let (march, tone) = (only(&document, "raymarch"), only(&document, "tone_map"));
         let solved = session.solve(&document, Target::Nodes(&[&tone]), &CancelToken::new(), &mut |_| ());
         let failures: Vec<_> = solved.evaluation.failures().collect();
