@@ -1,4 +1,8 @@
 //! The sources of the residual: what beams lose to scattering in each cell, and emission (DESIGN 6.3).
+//!
+//! Limits: what cells of parallel light get is not exactly what its rays lose, since rays see the trilinear
+//! extinction and cells are even: 0.3 % is missing at most in the scenes of the truth set, 6 % in a homogeneous
+//! block of 0.7 optical depths a cell at g 0, half in one of 5 (`tests/power.rs`).
 
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};

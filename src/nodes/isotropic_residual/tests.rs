@@ -309,38 +309,6 @@ fn flame_without_smoke_shines() {
 }
 
 #[test]
-fn power_out_is_power_in() {
-    // All from what can be read back. In a sweep k sigma_t phi h^3 over the cells and what leaves make up
-    // what the cells gave, Q0 + sigma_s* phi_before, and what came in; the factor is on top.
-    let Some(gpu) = gpu() else { return };
-    for (g, albedo) in [(-0.9, 0.5), (0.0, 0.99), (0.5, 1.0), (0.9, 0.0)] {
-        let scene = Scene { g, albedo: [albedo; 3], ..Scene::new([16, 8, 12], Filling::Random, 5.0) };
-        let medium = scene.medium(gpu);
-        let beams = scene.propagate(gpu, &medium, &suns(false), [0.3; 3]);
-        let swept = |n: usize| residual(gpu, json!({ "sweeps": n }), &medium, &beams);
-        let (before, after) = (swept(3), swept(4));
-        let factor = after.get::<Residual>().balance[0];
-        let (before, after) = (states(gpu, &before).remove(0), states(gpu, &after).remove(0));
-        let scaled = scene.oracle(0).scaled();
-        let sources = gpu_sources(gpu, &medium, &beams).remove(0);
-        let level =
-            Level::new(&scene.oracle(0), oracle_sources(&scene, 0, beams.get(), &taus(gpu, beams.get())));
-        let entering = solve(level, Quality::Fast.options()).balance.entering;
-        let volume = scene.cell_m.powi(3);
-        let sum = |of: &dyn Fn(usize) -> f64| (0..sources.data.len()).map(of).sum::<f64>() * volume;
-        let incoming = sum(&|idx| sources.data[idx].x) + entering;
-        let scattered = sum(&|idx| scene.sigma_t.data[idx] * scaled.sigma_s_ratio * before.data[idx].x);
-        let taken = sum(&|idx| scene.sigma_t.data[idx] * scaled.k * after.data[idx].x / factor);
-        let absorbed = sum(&|idx| scene.sigma_t.data[idx] * scaled.sigma_a_ratio * after.data[idx].x);
-        let leaving = factor * (incoming + scattered - taken);
-        let balance = (absorbed + leaving) / incoming;
-        assert!((balance - 1.0).abs() < 1e-5, "g {g} albedo {albedo}: {balance}");
-        // And the sum is not trivially so: a factor of 1 would miss it.
-        assert!((factor - 1.0).abs() > 1e-5 || albedo == 0.0, "{factor}");
-    }
-}
-
-#[test]
 fn several_batches_give_what_one_gives() {
     let Some(gpu) = gpu() else { return };
     let scene = Scene { albedo: [0.9, 0.5, 0.99], ..Scene::new([8, 6, 12], Filling::Random, 4.0) };
@@ -432,3 +400,5 @@ fn layouts_are_those_of_the_shaders() {
     let format = [("format", "r32float")];
     assert_layout::<solver::RestrictParams>("isotropic_residual/restrict.wgsl", "RestrictParams", &format);
 }
+
+mod power;
