@@ -85,13 +85,14 @@ fn describe(spec: &NodeSpec) -> String {
 }
 
 fn port_row(port: &PortSpec) -> Vec<String> {
-    let how = match (port.many, port.optional) {
+    let how = match (port.many, port.absent.is_some()) {
         (false, false) => "",
         (true, false) => " (many)",
         (false, true) => " (optional)",
         (true, true) => " (many, optional)",
     };
-    vec![port.name.to_owned(), format!("{}{how}", port.kind), port.doc.to_owned()]
+    let absent = port.absent.map_or(String::new(), |meaning| format!("; without it {meaning}"));
+    vec![port.name.to_owned(), format!("{}{how}", port.kind), format!("{}{absent}", port.doc)]
 }
 
 fn describe_param(param: &ParamSpec, indent: &str, text: &mut String) {
@@ -132,6 +133,9 @@ struct PortJson {
     kind: String,
     many: bool,
     optional: bool,
+    /// What it means that it stays empty.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    absent: Option<&'static str>,
     doc: &'static str,
 }
 
@@ -177,8 +181,8 @@ impl NodeJson {
 
 impl PortJson {
     fn of(port: &'static PortSpec) -> Self {
-        let PortSpec { name, kind, many, optional, doc } = *port;
-        Self { name, kind: kind.to_string(), many, optional, doc }
+        let PortSpec { name, kind, many, absent, doc } = *port;
+        Self { name, kind: kind.to_string(), many, optional: absent.is_some(), absent, doc }
     }
 }
 

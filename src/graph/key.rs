@@ -111,8 +111,8 @@ mod tests {
         ParamSpec::record("emission", &[ParamSpec::bool("on", true)]),
     ];
     const INPUTS: &[PortSpec] = &[
-        PortSpec::new("x", PortType::Light, "").many().optional(),
-        PortSpec::new("y", PortType::Light, "").many().optional(),
+        PortSpec::new("x", PortType::Light, "").many().optional(""),
+        PortSpec::new("y", PortType::Light, "").many().optional(""),
     ];
     static SPEC: NodeSpec = spec("kind", 1);
     static NEXT_VERSION: NodeSpec = spec("kind", 2);

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
 use super::sources::{Sources, with_sums};
-use super::{Effort, Kind, level, solver};
+use super::{Effort, level, solver};
 use crate::gpu::{Bind, Buffer, Format, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
@@ -71,11 +71,7 @@ pub(super) fn solve(
     };
     let of_beams = super::sources::sources(run, medium, beams, &channels, problem)?;
     let scene = Scene { run, medium, beams, surfaces, problem, channels, list, params, patches, of_beams };
-    // What only lights patches need not be as good as what is seen: all grids but the finest are solved.
-    let rough = match effort.kind {
-        Kind::Cascade => Effort { sweeps: 0, coarse_sweeps: effort.coarse_sweeps.min(8), ..effort },
-        _ => effort,
-    };
+    let rough = effort.rough();
     let unlit = scene.patches.irradiances(run)?;
     let unseen = scene.scattered(&scene.of_beams, &scene.settle(&scene.of_beams, rough)?)?;
     let [most, most_before] = LIT_CELLS;
@@ -152,7 +148,7 @@ impl Scene<'_> {
         let inputs = [
             sigma_t,
             clamp,
-            Bind::Texture(&self.medium.blocks),
+            Bind::Texture(&self.medium.blocks.texture),
             nodes,
             triangles,
             Bind::Buffer(&self.patches.grids),
@@ -185,7 +181,7 @@ impl Scene<'_> {
         let inputs = [
             Bind::Texture(&self.medium.sigma_t),
             Bind::Sampler(&sampler),
-            Bind::Texture(&self.medium.blocks),
+            Bind::Texture(&self.medium.blocks.texture),
             Bind::Texture(scattered),
             nodes,
             triangles,
@@ -194,7 +190,7 @@ impl Scene<'_> {
             Bind::Buffer(on_patches),
             Bind::Buffer(&self.list),
         ];
-        let [pack, _] = self.beams.tau.choices();
+        let pack = ("pack", self.beams.pack().to_string());
         let [of_camera, of_patches] = DIRECTIONS;
         let directions = if what_for == Use::Camera { of_camera } else { of_patches };
         let choices = [
