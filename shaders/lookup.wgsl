@@ -18,7 +18,7 @@ struct Look {
 @group(0) @binding(0) var<uniform> params: LookupParams;
 @group(1) @binding(0) var<storage, read> surface_triangles: array<SurfaceTriangle>;
 @group(1) @binding(1) var<storage, read> surface_light: array<vec4f>;
-@group(1) @binding(2) var<storage, read> surface_grids: array<vec2u>;
+@group(1) @binding(2) var<storage, read> surface_corners: array<vec4u>;
 @group(1) @binding(3) var<storage, read> looks: array<Look>;
 // No ray is sent through the tree: the layout of the stage leaves it out.
 @group(1) @binding(4) var<storage, read> surface_nodes: array<SurfaceNode>;

@@ -98,7 +98,7 @@ struct Pixel {
 @group(1) @binding(13) var temperature: texture_3d<f32>;
 @group(1) @binding(14) var blackbodies: texture_2d<f32>;
 @group(1) @binding(15) var<storage, read> surface_light: array<vec4f>;
-@group(1) @binding(16) var<storage, read> surface_grids: array<vec2u>;
+@group(1) @binding(16) var<storage, read> surface_corners: array<vec4u>;
 @group(1) @binding(17) var star: texture_3d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
@@ -250,6 +250,7 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
         let sharp = exp(-layers.tau);
         let through = exp(-spectrum(params.k) * layers.tau);
         let color = params.color.xyz;
+        var single = color * rgb(layers.single);
         var behind = sharp;
         var distance = layers.distance;
         if surface.triangle == NO_SURFACE {
@@ -257,6 +258,10 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
             var forward = color * rgb(layers.forward + (through - sharp) * spectrum(params.ambient));
             if HAS_STACK {
                 forward += environment_forward(turned, layers.tau);
+                // Where ordinates shine more evenly than the medium scatters the stack takes that back, and what
+                // is scattered once is the first that gives. Never more than there is.
+                single = max(single + min(forward, vec3f(0.0)), vec3f(0.0));
+                forward = max(forward, vec3f(0.0));
             }
             pixel.forward += vec4f(forward, 0.0);
             pixel.beauty += vec4f(forward + sharp * environment_radiance(turned), 0.0);
@@ -269,7 +274,6 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
             distance += sharp * surface.t;
             behind = 0.0;
         }
-        let single = color * rgb(layers.single);
         let residual = color * rgb(layers.residual);
         let emission = color * rgb(layers.emission);
         pixel.beauty += vec4f(single + residual + emission, 1.0 - behind);

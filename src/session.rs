@@ -43,7 +43,7 @@ pub struct Solved {
 /// What a node cost.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct NodeCost {
-    /// The node.
+    /// The node; `camera@8` where it ran for the sake of another frame.
     pub name: String,
     /// Its kind.
     #[serde(rename = "type")]
@@ -101,10 +101,10 @@ impl Session {
         let mut costs = Vec::new();
         let evaluation = evaluate(&plan, &host, &mut self.cache, cancel, &mut |event| {
             if let Event::Finished { name, cached, cpu_ms, bytes, report } = &event {
-                let kind = document.nodes.get(name).and_then(|node| nodes::kind(&node.type_id));
+                let work = plan.job(name).and_then(|job| job.work.as_ref().ok());
                 costs.push(NodeCost {
                     name: name.clone(),
-                    kind: kind.map_or("", |kind| kind.spec.id),
+                    kind: work.map_or("", |work| work.spec.id),
                     cpu_ms: *cpu_ms,
                     gpu_ms: host.gpu_ms.borrow().get(name).copied().filter(|_| !cached).unwrap_or(0.0),
                     bytes: *bytes,

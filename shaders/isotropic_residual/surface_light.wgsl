@@ -5,8 +5,8 @@
 #import "lib/beam.wgsl"
 #import "lib/block.wgsl"
 #import "lib/lobe.wgsl"
-#import "lib/patches.wgsl"
 #import "lib/surface_beam.wgsl"
+#import "lib/surface_light.wgsl"
 #import "lib/transmittance.wgsl"
 
 struct SurfacePoint {
@@ -23,8 +23,8 @@ struct SurfacePoint {
 @group(1) @binding(4) var<storage, read> surface_nodes: array<SurfaceNode>;
 @group(1) @binding(5) var<storage, read> surface_triangles: array<SurfaceTriangle>;
 @group(1) @binding(6) var<storage, read> points: array<SurfacePoint>;
-@group(1) @binding(7) var<storage, read> patch_grids: array<vec2u>;
-@group(1) @binding(8) var<storage, read> patch_irradiances: array<vec4f>;
+@group(1) @binding(7) var<storage, read> surface_corners: array<vec4u>;
+@group(1) @binding(8) var<storage, read> surface_light: array<vec4f>;
 @group(1) @binding(9) var<storage, read> beams: array<Beam>;
 @group(2) @binding(0) var<storage, read_write> irradiances: array<vec4f>;
 
@@ -35,6 +35,8 @@ const FAR: f32 = 1e30;
 const OPAQUE: f32 = 1e-4;
 // Whether beams count whose light the camera adds point by point.
 const HAS_NARROW: bool = {narrow};
+// Threads along x of one dispatch.
+const ROW: u32 = 4194240u;
 
 // Irradiance of one beam on a side, per channel.
 fn from_beam(beam: Beam, p: vec3f, normal: vec3f) -> vec3f {
@@ -89,7 +91,7 @@ fn arriving(p: vec3f, direction: vec3f) -> vec3f {
     }
     var beyond = vec3f(level.channels[0].inflow, level.channels[1].inflow, level.channels[2].inflow);
     if hit.triangle != NO_SURFACE {
-        beyond = patch_radiance(hit.triangle, p + hit.t * direction, direction);
+        beyond = returned_radiance(hit.triangle, p + hit.t * direction, direction);
     }
     return radiance + through * beyond;
 }
@@ -97,7 +99,7 @@ fn arriving(p: vec3f, direction: vec3f) -> vec3f {
 @compute @workgroup_size(64, 1, 1)
 fn isotropic_residual_surface_light(@builtin(global_invocation_id) id: vec3u) {
     // Beyond 65,535 groups along x, threads stand along y.
-    let idx = id.x + 4194240u * id.y;
+    let idx = id.x + ROW * id.y;
     if idx >= 2u * params.n_points {
         return;
     }

@@ -3,7 +3,7 @@
 
 #import "isotropic_residual/bounce.wgsl"
 #import "lib/block.wgsl"
-#import "lib/patches.wgsl"
+#import "lib/surface_light.wgsl"
 
 @group(0) @binding(0) var<uniform> params: BounceParams;
 @group(1) @binding(0) var sigma_t: texture_3d<f32>;
@@ -11,8 +11,8 @@
 @group(1) @binding(2) var blocks: texture_3d<f32>;
 @group(1) @binding(3) var<storage, read> surface_nodes: array<SurfaceNode>;
 @group(1) @binding(4) var<storage, read> surface_triangles: array<SurfaceTriangle>;
-@group(1) @binding(5) var<storage, read> patch_grids: array<vec2u>;
-@group(1) @binding(6) var<storage, read> patch_irradiances: array<vec4f>;
+@group(1) @binding(5) var<storage, read> surface_corners: array<vec4u>;
+@group(1) @binding(6) var<storage, read> surface_light: array<vec4f>;
 @group(2) @binding(0) var uncollided: texture_storage_3d<rgba32float, write>;
 
 const N_DIRECTIONS: u32 = 32u;
@@ -52,7 +52,7 @@ fn isotropic_residual_uncollided(@builtin(global_invocation_id) id: vec3u) {
         let hit = nearest_surface(p, towards, 1e30);
         if hit.triangle != NO_SURFACE {
             let at = p + hit.t * towards;
-            let radiance = patch_radiance(hit.triangle, at, towards);
+            let radiance = returned_radiance(hit.triangle, at, towards);
             let tau = walk(sigma_t, linear_clamp, params.shape, level.cell_m, p, towards, hit.t);
             let beyond = walk(sigma_t, linear_clamp, params.shape, level.cell_m, at, towards, 1e30);
             for (var c = 0u; c < level.n_channels; c += 1u) {

@@ -61,7 +61,8 @@ fn list(all: &[&NodeSpec]) -> String {
             let _ = writeln!(text, "  {NAME}{:<width$}{NAME:#}  {}", spec.id, spec.purpose);
         }
     }
-    text + "`tyndall nodes NAME` shows ports and parameters.\n"
+    text + "`tyndall nodes NAME` shows ports and parameters. Numbers, vectors, colors and directions may change with\n\
+            the frame: {\"keys\": [[1, 0.5], [48, 2]]} goes from 0.5 in frame 1 to 2 in frame 48.\n"
 }
 
 fn describe(spec: &NodeSpec) -> String {
@@ -136,6 +137,9 @@ struct PortJson {
     /// What it means that it stays empty.
     #[serde(skip_serializing_if = "Option::is_none")]
     absent: Option<&'static str>,
+    /// The parameter that says how many frames apart its values are, between which it fades.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    faded_by: Option<&'static str>,
     doc: &'static str,
 }
 
@@ -148,6 +152,8 @@ struct ParamJson {
     unit: &'static str,
     required: bool,
     default: Option<Json>,
+    /// May change with the frame.
+    keys: bool,
     min: Option<f64>,
     max: Option<f64>,
     /// The end itself is not allowed.
@@ -181,8 +187,8 @@ impl NodeJson {
 
 impl PortJson {
     fn of(port: &'static PortSpec) -> Self {
-        let PortSpec { name, kind, many, absent, doc } = *port;
-        Self { name, kind: kind.to_string(), many, optional: absent.is_some(), absent, doc }
+        let PortSpec { name, kind, many, absent, faded_by, doc } = *port;
+        Self { name, kind: kind.to_string(), many, optional: absent.is_some(), absent, faded_by, doc }
     }
 }
 
@@ -210,6 +216,7 @@ impl ParamJson {
             unit: param.unit,
             required: default.is_none(),
             default,
+            keys: param.kind.takes_keys(),
             min,
             max,
             open_min,

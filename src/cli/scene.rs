@@ -15,7 +15,6 @@ use super::output::Lines;
 use super::render::Args;
 
 const SAVE: &str = "save_image";
-const LOAD: &str = "load_vdb";
 const CAMERA: &str = "camera";
 
 /// What is to be rendered.
@@ -55,8 +54,10 @@ impl Scene {
         });
         let outputs: Vec<Output> = outputs.collect();
         check_outputs(&outputs, args.frames.is_some())?;
-        if args.frames.is_some() && !document.nodes.values().any(|node| node.type_id == LOAD) {
-            anyhow::bail!("--frames: the graph has no load_vdb whose frame could change; leave it out");
+        if args.frames.is_some() && !document.varies(catalog()) {
+            anyhow::bail!(
+                "--frames: nothing in the graph changes with the frame, no load_vdb and no parameter with keys; leave it out"
+            );
         }
         Ok(Self { document, outputs })
     }
@@ -66,12 +67,7 @@ impl Scene {
     /// # Errors
     /// When a path is not UTF-8 or the working directory cannot be read.
     pub fn document_of(&self, frame: Option<i64>, outputs: &[Output]) -> anyhow::Result<Document> {
-        let mut document = self.document.clone();
-        if let Some(frame) = frame {
-            for node in document.nodes.values_mut().filter(|node| node.type_id == LOAD) {
-                node.params.insert("frame".to_owned(), frame.into());
-            }
-        }
+        let mut document = Document { frame, ..self.document.clone() };
         for output in outputs {
             // Relative paths in a document start at the graph.
             let path = std::path::absolute(&output.path)

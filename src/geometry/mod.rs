@@ -7,6 +7,7 @@
 //! the tree against rays that try every triangle.
 
 pub mod bvh;
+pub mod divide;
 mod gltf;
 mod obj;
 #[cfg(test)]

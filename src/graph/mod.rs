@@ -34,9 +34,9 @@ pub use eval::{
 };
 pub use file::FileState;
 pub use key::Key;
-pub use params::{ParamProblem, ParamValue, Params};
+pub use params::{Moment, ParamProblem, ParamValue, Params};
 pub use plan::{Job, Plan, Source, Target, Work};
 pub use report::{Decision, Report, StageWork};
-pub use spec::{Catalog, Category, Limits, NodeSpec, ParamKind, ParamSpec, PortSpec, PortType};
+pub use spec::{Catalog, Category, Limits, NodeSpec, ParamKind, ParamSpec, PortSpec, PortType, Timing};
 pub use suggest::did_you_mean;
 pub use value::Value;

@@ -34,13 +34,15 @@ pub struct Inputs {
     spec: &'static NodeSpec,
     /// For each input of the spec, in the order of the wires.
     ports: Vec<Vec<Value>>,
+    /// What each value counts for.
+    shares: Vec<Vec<f64>>,
 }
 
 impl Inputs {
     /// All inputs empty.
     pub fn new(spec: &'static NodeSpec) -> Self {
-        let ports = vec![Vec::new(); spec.inputs.len()];
-        Self { spec, ports }
+        let n_inputs = spec.inputs.len();
+        Self { spec, ports: vec![Vec::new(); n_inputs], shares: vec![Vec::new(); n_inputs] }
     }
 
     /// Adds a value after those that the input has.
@@ -48,11 +50,21 @@ impl Inputs {
     /// # Panics
     /// When the input is not declared or takes another kind or no second value.
     pub fn push(&mut self, port: &str, value: Value) {
+        self.push_share(port, value, 1.0);
+    }
+
+    /// Adds a value that counts for a share of one, to an input that fades; elsewhere it is 1.
+    ///
+    /// # Panics
+    /// As `push` does.
+    pub fn push_share(&mut self, port: &str, value: Value, share: f64) {
         let idx = self.place(port);
         let spec = &self.spec.inputs[idx];
         assert_eq!(value.kind, spec.kind, "{}.{port}", self.spec.id);
-        assert!(spec.many || self.ports[idx].is_empty(), "{}.{port} takes one value", self.spec.id);
+        let takes_many = spec.many || spec.faded_by.is_some();
+        assert!(takes_many || self.ports[idx].is_empty(), "{}.{port} takes one value", self.spec.id);
         self.ports[idx].push(value);
+        self.shares[idx].push(share);
     }
 
     /// The value of an input that must be wired.
@@ -69,6 +81,11 @@ impl Inputs {
     /// The values of an input that takes many, in the order of the wires.
     pub fn many<T: 'static>(&self, port: &str) -> Vec<&T> {
         self.values(port).iter().map(Value::get).collect()
+    }
+
+    /// The values of an input that fades, none or those of one or two frames, with shares that add up to 1.
+    pub fn faded<T: 'static>(&self, port: &str) -> Vec<(&T, f64)> {
+        self.many(port).into_iter().zip(self.shares[self.place(port)].iter().copied()).collect()
     }
 
     /// The values themselves, for a node that passes one on.

@@ -14,7 +14,7 @@ pub struct Report {
     pub cells: Option<[usize; 3]>,
     /// Channels of color that are computed.
     pub channels: Option<usize>,
-    /// Size of its outputs, where a run was only foretold [bytes].
+    /// Size of its outputs, where a run was only foretold in bytes.
     pub bytes: Option<u64>,
     /// What its stages move, where that is known before they run.
     pub stages: Vec<StageWork>,
@@ -42,7 +42,7 @@ pub struct StageWork {
     pub stage: &'static str,
     /// How often it runs.
     pub runs: usize,
-    /// What its threads read and write, caches not counted [bytes]; `None` where only the run shows it.
+    /// What its threads read and write, caches not counted in bytes; `None` where only the run shows it.
     pub moved_bytes: Option<u64>,
 }
 

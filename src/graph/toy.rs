@@ -7,7 +7,7 @@ use super::report::{Decision, Report};
 use super::spec::{Catalog, Category, NodeSpec, ParamSpec, PortSpec, PortType};
 use super::value::Value;
 
-pub const CATALOG: Catalog = Catalog(&[&NUMBER, &SUM, &PAIR, &PAINT, &SAVE, &FILE, &SHAPE, &MEDIUM]);
+pub const CATALOG: Catalog = Catalog(&[&NUMBER, &SUM, &PAIR, &PAINT, &SAVE, &FILE, &SHAPE, &MEDIUM, &FADE]);
 
 const fn kind(
     id: &'static str,
@@ -34,6 +34,13 @@ pub static PAIR: NodeSpec = kind(
     ],
     &[PortSpec::new("difference", PortType::Light, ""), PortSpec::new("total", PortType::Light, "")],
     &[],
+);
+/// Fades from one value to the next.
+pub static FADE: NodeSpec = kind(
+    "fade",
+    &[PortSpec::new("light", PortType::Light, "").optional("there is none").faded_by("apart")],
+    &[LIGHT],
+    &[ParamSpec::int("apart", 4).between(0.0, 100.0)],
 );
 pub static PAINT: NodeSpec = kind("paint", &[LIGHT], &[IMAGE], &[]);
 pub static SAVE: NodeSpec = kind("save", &[IMAGE], &[], &[ParamSpec::out_path("path", "out.exr")]);
@@ -115,6 +122,10 @@ impl Host for ToyHost {
                 let b = inputs.maybe::<f64>("b").copied();
                 let difference = b.map_or(-a, |b| a - b);
                 Outputs::new([light(difference), light(a + b.unwrap_or(0.0))])
+            }
+            "fade" => {
+                let lights = inputs.faded::<f64>("light");
+                Outputs::new([light(lights.iter().map(|(x, share)| share * **x).sum())])
             }
             "paint" => {
                 let x: &f64 = inputs.one("light");

@@ -18,7 +18,7 @@ use super::{NodeError, Run, kind};
 use crate::geometry::Mesh;
 pub use crate::gpu::testing::gpu;
 use crate::gpu::{Format, Gpu, Mirror, Shader, wgsl_members};
-use crate::graph::{CancelToken, Inputs, Params, PortType, Value};
+use crate::graph::{CancelToken, Inputs, Moment, Params, PortType, Value};
 use crate::light::{Light, Ordinate, Ordinates};
 use crate::volume::Lattice;
 use crate::volume::field::Field;
@@ -60,12 +60,25 @@ pub fn with_run<T>(
     inputs: &[(&str, &Value)],
     body: impl FnOnce(&Run) -> T,
 ) -> T {
+    let shares: Vec<_> = inputs.iter().map(|(port, value)| (*port, *value, 1.0)).collect();
+    with_shares(gpu, id, params, &shares, body)
+}
+
+/// The same where inputs that fade have values with their shares.
+pub fn with_shares<T>(
+    gpu: &Gpu,
+    id: &str,
+    params: Json,
+    inputs: &[(&str, &Value, f64)],
+    body: impl FnOnce(&Run) -> T,
+) -> T {
     let spec = kind(id).expect(id).spec;
     let given: Map<String, Json> = params.as_object().expect("parameters are an object").clone();
-    let params = Params::resolve(spec.params, &given, Path::new("")).expect("valid parameters");
+    let params =
+        Params::resolve(spec.params, &given, Path::new(""), Moment::default()).expect("valid parameters");
     let mut list = Inputs::new(spec);
-    for (port, value) in inputs {
-        list.push(port, (*value).clone());
+    for (port, value, share) in inputs {
+        list.push_share(port, (*value).clone(), *share);
     }
     let cancel = CancelToken::new();
     let report = RefCell::default();

@@ -240,13 +240,13 @@ const THICK: f64 = 0.7;
 pub struct Split {
     /// The largest extinction [1/m].
     pub sigma_t_max: f64,
-    /// Edge of a cell before it is split [m].
+    /// Edge of a cell before it is split in meters.
     pub whole_m: f64,
     /// Whether the user bounds the resolution, and does not want it split again.
     pub is_bounded: bool,
 }
 
-/// The longest cell that is not to be split [m], and what to say once cells are `cell_m` long.
+/// The longest cell that is not to be split in meters, and what to say once cells are `cell_m` long.
 pub fn split(facts: Split, prune: bool) -> (f64, impl Fn(f64) -> Decision) {
     let Split { sigma_t_max, whole_m, is_bounded } = facts;
     let wanted_m = match () {

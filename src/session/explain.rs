@@ -35,9 +35,9 @@ pub struct Explanation {
     /// Whether it was run to know this; else it was foretold.
     pub was_run: bool,
     /// The wall clock of that run, 0 where its result was there already; else the prediction. `None` where
-    /// nobody knows [ms].
+    /// nobody knows, in ms.
     pub ms: Option<f64>,
-    /// Of its outputs; `None` where nobody knows [bytes].
+    /// Of its outputs; `None` where nobody knows in bytes.
     pub bytes: Option<u64>,
     /// What it says of itself.
     pub report: Arc<Report>,

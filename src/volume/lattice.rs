@@ -82,7 +82,7 @@ impl Lattice {
         lattice
     }
 
-    /// Edge of a cell that is not split [m]: of the arguments of [`Self::fit`].
+    /// Edge of a cell that is not split in meters: of the arguments of [`Self::fit`].
     pub fn whole_cell_m(min: DVec3, max: DVec3, world_from_voxel: DMat4, max_resolution: usize) -> f64 {
         let plain = Fineness { max_resolution, wanted_cell_m: f64::INFINITY, max_cells: 0, max_axis: 0 };
         Self::fit(min, max, world_from_voxel, plain).cell_m

@@ -67,6 +67,11 @@ mirror! {
     }
 }
 
+/// Kinds of a [`ShapeTexel`], as `shaders/lib/shape.wgsl` has them.
+const VOXELS: u32 = 0;
+const ELLIPSOID: u32 = 1;
+const BOX: u32 = 2;
+
 /// Edge of a block in cells.
 const BLOCK: usize = 8;
 
@@ -119,7 +124,7 @@ impl Medium {
         match self.homogeneous {
             Some(shape) => ShapeTexel {
                 center: single(shape.center),
-                kind: if shape.ellipsoid { 1 } else { 2 },
+                kind: if shape.ellipsoid { ELLIPSOID } else { BOX },
                 half_extent: single(shape.half_extent),
                 sigma_t: self.sigma_t_max as f32,
             },
@@ -128,7 +133,7 @@ impl Medium {
                 let last = DVec3::from_array(self.lattice.occupied.map(|n| (n - 1) as f64));
                 ShapeTexel {
                     center: single(0.5 * last),
-                    kind: 0,
+                    kind: VOXELS,
                     half_extent: single(0.5 * last),
                     sigma_t: 0.0,
                 }
@@ -145,6 +150,14 @@ mod tests {
     #[test]
     fn blocks_are_as_large_in_the_shaders() {
         let shader = Shader::expand("occupancy.wgsl", &[("emission", "true".to_owned())]).unwrap();
-        assert_eq!(wgsl_constant(&shader, "BLOCK").unwrap(), BLOCK as i64);
+        assert_eq!(wgsl_constant(&shader, "BLOCK").unwrap(), [BLOCK as f64]);
+    }
+
+    #[test]
+    fn shapes_have_the_same_numbers_in_the_shaders() {
+        let shader = Shader::expand("lib/shape.wgsl", &[]).unwrap();
+        for (name, kind) in [("VOXELS", VOXELS), ("ELLIPSOID", ELLIPSOID), ("BOX", BOX)] {
+            assert_eq!(wgsl_constant(&shader, name).unwrap(), [f64::from(kind)], "{name}");
+        }
     }
 }

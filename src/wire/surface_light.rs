@@ -5,32 +5,39 @@ use glam::Vec3;
 use super::Surfaces;
 use crate::gpu::{Bind, Buffer};
 
-/// Irradiance [W/m²] at the corners of the cuts of each triangle, on both of its sides, between which it is
-/// linear. In it is all light but that of narrow beams (`is_narrow` of `shaders/lib/beam.wgsl`), whose
-/// shadows are sharper than cuts: who looks it up adds those.
+/// Irradiance [W/m²] at points of surfaces, on both of their sides; across a triangle it is linear between the
+/// points of its corners. In it is all light but that of narrow beams (`is_narrow` of
+/// `shaders/lib/beam.wgsl`), whose shadows are sharper than triangles: who looks it up adds those.
 pub struct SurfaceLight {
-    /// Two for each corner, the side of the normal and the other; the residual's channels in red, green and
+    /// Two for each point, the side of the normal and the other; the residual's channels in red, green and
     /// blue, one channel in red.
     pub(crate) irradiances: Buffer,
-    /// For each triangle its first corner, and its cuts along an edge.
-    pub(crate) grids: Buffer,
-    /// The triangles, in the order in which they are numbered.
-    pub(crate) triangles: Vec<[Vec3; 3]>,
+    /// For each triangle the points that its corners are lit as.
+    pub(crate) corners: Buffer,
+    /// The triangles, small enough for what arrives.
+    pub(crate) surfaces: Surfaces,
+    /// What they are pieces of, in the order in which those are numbered.
+    pub(crate) whole: Vec<[Vec3; 3]>,
 }
 
 impl SurfaceLight {
-    /// Whether these are the surfaces that it lies on, numbered alike.
+    /// Whether it lies on these surfaces.
     pub fn is_of(&self, surfaces: &Surfaces) -> bool {
-        self.triangles == surfaces.corners
+        self.whole == surfaces.corners
     }
 
-    /// For a stage: `surface_light`, then `surface_grids`.
+    /// The triangles by whose numbers it is looked up.
+    pub fn surfaces(&self) -> &Surfaces {
+        &self.surfaces
+    }
+
+    /// For a stage: `surface_light`, then `surface_corners`.
     pub fn binds(&self) -> [Bind<'_>; 2] {
-        [Bind::Buffer(&self.irradiances), Bind::Buffer(&self.grids)]
+        [Bind::Buffer(&self.irradiances), Bind::Buffer(&self.corners)]
     }
 
     /// On the GPU.
     pub fn bytes(&self) -> u64 {
-        self.irradiances.bytes() + self.grids.bytes()
+        self.irradiances.bytes() + self.corners.bytes() + self.surfaces.bytes()
     }
 }

@@ -40,6 +40,8 @@ pub struct Surfaces {
     triangles: Buffer,
     /// Corners of the triangles in index space, in the order in which shaders number them.
     pub corners: Vec<[Vec3; 3]>,
+    /// Their reflectances.
+    reflectances: Vec<[f32; 3]>,
 }
 
 /// A box that no ray meets: what stands where there are no surfaces.
@@ -72,23 +74,37 @@ impl Surfaces {
             corners.extend(mesh.triangles.iter().map(|t| t.map(|n| positions[n as usize])));
             reflectances.resize(corners.len(), mesh.reflectance.map(|share| share as f32));
         }
-        let bvh = Bvh::new(&corners);
+        Self::under_a_tree(gpu, &corners, &reflectances)
+    }
+
+    /// The same surfaces in pieces: triangles, and the number of the triangle that each is of.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the device has no room.
+    pub fn divided(&self, gpu: &Gpu, pieces: &[([Vec3; 3], u32)]) -> Result<Self, GpuError> {
+        let corners: Vec<[Vec3; 3]> = pieces.iter().map(|(corners, _)| *corners).collect();
+        let reflectances: Vec<[f32; 3]> =
+            pieces.iter().map(|(_, whole)| self.reflectances[*whole as usize]).collect();
+        Self::under_a_tree(gpu, &corners, &reflectances)
+    }
+
+    fn under_a_tree(gpu: &Gpu, corners: &[[Vec3; 3]], reflectances: &[[f32; 3]]) -> Result<Self, GpuError> {
+        let bvh = Bvh::new(corners);
         let node = |node: &crate::geometry::bvh::Node| SurfaceNode {
             low: node.low.to_array(),
             first_or_skip: if node.n_triangles > 0 { node.first } else { node.skip },
             high: node.high.to_array(),
             n_triangles: node.n_triangles,
         };
-        let triangle = |n: &u32| {
-            let ([a, b, c], [red, green, blue]) = (corners[*n as usize], reflectances[*n as usize]);
-            SurfaceTriangle {
-                a: a.extend(red).to_array(),
-                b: b.extend(green).to_array(),
-                c: c.extend(blue).to_array(),
-            }
+        let corners: Vec<[Vec3; 3]> = bvh.order.iter().map(|n| corners[*n as usize]).collect();
+        let reflectances: Vec<[f32; 3]> = bvh.order.iter().map(|n| reflectances[*n as usize]).collect();
+        let triangle = |([a, b, c], [red, green, blue]): (&[Vec3; 3], &[f32; 3])| SurfaceTriangle {
+            a: a.extend(*red).to_array(),
+            b: b.extend(*green).to_array(),
+            c: c.extend(*blue).to_array(),
         };
         let nodes: Vec<SurfaceNode> = bvh.nodes.iter().map(node).collect();
-        let triangles: Vec<SurfaceTriangle> = bvh.order.iter().map(triangle).collect();
+        let triangles: Vec<SurfaceTriangle> = corners.iter().zip(&reflectances).map(triangle).collect();
         // A shader's arrays have at least one element.
         let (nodes, triangles) = match triangles.len() {
             0 => (vec![NOWHERE], vec![bytemuck::Zeroable::zeroed()]),
@@ -97,7 +113,8 @@ impl Surfaces {
         Ok(Self {
             nodes: gpu.buffer_from("boxes of surfaces", &nodes, REMEDY)?,
             triangles: gpu.buffer_from("triangles of surfaces", &triangles, REMEDY)?,
-            corners: bvh.order.iter().map(|n| corners[*n as usize]).collect(),
+            corners,
+            reflectances,
         })
     }
 
@@ -109,5 +126,9 @@ impl Surfaces {
     /// For a stage: `surface_nodes`, then `surface_triangles`.
     pub fn binds(&self) -> [Bind<'_>; 2] {
         [Bind::Buffer(&self.nodes), Bind::Buffer(&self.triangles)]
+    }
+    /// On the GPU.
+    pub fn bytes(&self) -> u64 {
+        self.nodes.bytes() + self.triangles.bytes()
     }
 }

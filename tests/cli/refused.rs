@@ -113,7 +113,7 @@ fn outputs_that_cannot_be() {
     );
     refused(
         &["--frames", "1-2"],
-        "--frames: the graph has no load_vdb whose frame could change; leave it out",
+        "--frames: nothing in the graph changes with the frame, no load_vdb and no parameter with keys; leave it out",
     );
     refused(
         &["--size", "16385x1"],

@@ -1,17 +1,17 @@
 //! Light that surfaces send back into the medium (DESIGN 6.7).
 //!
-//! Surfaces are cut into patches, each with one irradiance E a side, which send back L = reflectance E / pi. E
-//! is what beams bring, past surfaces and through the medium, and a march of 16 directions through what the
-//! medium scatters, other patches and ambient light. From cells near matter 32 rays look for patches: their
-//! (phi, F) is the first-collision source Q0 += sigma_s* phi, Q1 += sigma_s* g* F of another solve, and is
-//! added to the field that the camera reads. Twice: what comes back once more lights the patches again.
+//! At points of surfaces (`points.rs`) the irradiance E is known on both sides, between them it is linear, and
+//! surfaces send back L = reflectance E / pi. E is what beams bring, past surfaces and through the medium, and
+//! a march of 16 directions through what the medium scatters, to other surfaces and ambient light. From cells
+//! near matter 32 rays look for surfaces: their (phi, F) is the first-collision source Q0 += sigma_s* phi, Q1 += sigma_s* g* F of another solve, and is
+//! added to the field that the camera reads. Twice: what comes back once more lights surfaces again.
 //! Ambient light enters the solver past surfaces: what they hide of it is taken off the same rays, so that
 //! (phi, F) straight from surfaces may be negative. With the ambient light that is in the solver's it is not.
-//! In the end E is computed once more, from 64 directions, at the corners of the patches and without narrow
-//! beams: what a camera finds on surfaces that it sees.
+//! In the end E is computed once more, from 64 directions and without narrow beams: what a camera finds on
+//! surfaces that it sees.
 //!
-//! Limits: what the medium has scattered passes through surfaces inside of it; the light of patches is as coarse as they are (at
-//! least two cells, 2^14 of them on all surfaces), and is gathered on at most 2^16 cells. Tested by the closed
+//! Limits: what the medium has scattered passes through surfaces inside of it; light on surfaces is as coarse
+//! as their points (two cells apart or more, 2^14 on all surfaces), and is gathered on at most 2^16 cells. Tested by the closed
 //! forms of planes in a void and in a thin medium, and by what a closed ball must hold.
 
 use std::sync::Arc;
@@ -25,9 +25,9 @@ use crate::graph::NodeError;
 use crate::mirror;
 use crate::wire::{Beams, Channels, Medium, Residual, ShapeTexel, SurfaceLight, Surfaces};
 
-mod cuts;
+mod points;
 
-use cuts::Points;
+use points::Points;
 
 mirror! {
     /// `BounceParams` of `bounce.wgsl`.
@@ -41,12 +41,9 @@ mirror! {
     }
 }
 
-/// Cells that look for patches, at most: in the last bounce, which is seen, and in the one before.
+/// Cells that look for surfaces, at most: in the last bounce, which is seen, and in the one before.
 const LIT_CELLS: [usize; 2] = [1 << 16, 1 << 13];
-/// Directions from which light is gathered: for the camera, and for patches, whose own light is spread
-/// over the medium before it is seen.
-const DIRECTIONS: [usize; 2] = [64, 16];
-/// Threads along x of one dispatch, 65,535 groups of 64; `surface_light.wgsl`.
+/// Threads along x of one dispatch, 65,535 groups of 64, as `surface_light.wgsl` has it.
 const ROW: usize = 4_194_240;
 
 /// Solves for the residual with what surfaces send back.
@@ -59,7 +56,7 @@ pub(super) fn solve(
     effort: Effort,
     channels: Channels,
 ) -> Result<Residual, NodeError> {
-    let patches = Points::middles(run, surfaces)?;
+    let points = Points::new(run.gpu, medium.lattice.occupied, surfaces)?;
     let list = beams.list(run.gpu, &channels)?;
     let params = BounceParams {
         level: problem.level(medium.lattice.dims, medium.lattice.cell_m),
@@ -70,30 +67,47 @@ pub(super) fn solve(
         pad: 0,
     };
     let of_beams = super::sources::sources(run, medium, beams, &channels, problem)?;
-    let scene = Scene { run, medium, beams, surfaces, problem, channels, list, params, patches, of_beams };
+    let mut scene = Scene { run, medium, beams, problem, channels, list, params, points, of_beams };
     let rough = effort.rough();
-    let unlit = scene.patches.irradiances(run)?;
     let unseen = scene.scattered(&scene.of_beams, &scene.settle(&scene.of_beams, rough)?)?;
+    let unlit = scene.points.irradiances(run.gpu)?;
+    let glance = scene.irradiances(&unseen, &unlit, Use::Glance)?;
+    scene.points = scene.points.settled(run.gpu, &glance)?;
     let [most, most_before] = LIT_CELLS;
     let before = scene.bounce(&unseen, &unlit, most_before, rough)?;
-    let last = scene.bounce(&before.scattered, &before.on_patches, most, effort)?;
-    let corners = Points::corners(run, surfaces)?;
-    let irradiances = scene.irradiances(&corners, &last.scattered, &last.on_patches, Use::Camera)?;
-    let surface_light =
-        SurfaceLight { irradiances, grids: corners.grids, triangles: surfaces.corners.clone() };
-    Ok(Residual {
-        moments: Arc::new(scene.with_uncollided(&last)?),
-        surface_light: Some(Arc::new(surface_light)),
-        ..last.residual
-    })
+    let last = scene.bounce(&before.scattered, &before.on_surfaces, most, effort)?;
+    let irradiances = scene.irradiances(&last.scattered, &last.on_surfaces, Use::Camera)?;
+    let moments = Arc::new(scene.with_uncollided(&last)?);
+    let surface_light = SurfaceLight {
+        irradiances,
+        corners: scene.points.corners,
+        surfaces: scene.points.surfaces,
+        whole: surfaces.corners.clone(),
+    };
+    Ok(Residual { moments, surface_light: Some(Arc::new(surface_light)), ..last.residual })
 }
 
 /// What light on points of surfaces is for.
 #[derive(Clone, Copy, PartialEq)]
 enum Use {
-    Patches,
-    /// Which adds narrow beams by itself.
+    /// To see which points are in the dark.
+    Glance,
+    /// To be sent back.
+    Bounce,
+    /// To be seen by a camera, which adds narrow beams by itself.
     Camera,
+}
+
+impl Use {
+    /// From how many directions light is gathered. What surfaces send back is spread over the medium before it
+    /// is seen.
+    fn n_directions(self) -> usize {
+        match self {
+            Self::Glance => 4,
+            Self::Bounce => 16,
+            Self::Camera => 64,
+        }
+    }
 }
 
 /// What all bounces share.
@@ -101,19 +115,18 @@ struct Scene<'a> {
     run: &'a Run<'a>,
     medium: &'a Medium,
     beams: &'a Beams,
-    surfaces: &'a Surfaces,
     problem: &'a Problem,
     channels: Channels,
     list: Buffer,
     params: BounceParams,
-    patches: Points,
+    points: Points,
     of_beams: Sources,
 }
 
 /// Light after a bounce.
 struct Bounced {
-    /// What patches sent back, before it was spread.
-    on_patches: Buffer,
+    /// E on surfaces, of which this is the light.
+    on_surfaces: Buffer,
     /// phi and F straight from surfaces, in cells `coarser` times as large as the medium's.
     uncollided: Texture,
     coarser: u32,
@@ -128,31 +141,31 @@ impl Scene<'_> {
         solver::solve(self.run, self.medium, sources, self.problem, effort, self.channels, level::BATCH_BYTES)
     }
 
-    /// Lights the patches, and the medium by them.
+    /// Lights the surfaces, and the medium by them.
     fn bounce(
         &self,
         scattered: &Texture,
-        on_patches: &Buffer,
+        on_surfaces: &Buffer,
         most_lit: usize,
         effort: Effort,
     ) -> Result<Bounced, NodeError> {
         let gpu = self.run.gpu;
-        let on_patches = self.irradiances(&self.patches, scattered, on_patches, Use::Patches)?;
+        let on_surfaces = self.irradiances(scattered, on_surfaces, Use::Bounce)?;
         let dims = self.medium.lattice.dims;
         let coarser = coarser(dims, most_lit);
         let params = BounceParams { coarser: coarser as u32, ..self.params };
         let lit_dims = dims.map(|n| n / coarser);
         let sampler = gpu.linear_sampler();
         let (clamp, sigma_t) = (Bind::Sampler(&sampler), Bind::Texture(&self.medium.sigma_t));
-        let [nodes, triangles] = self.surfaces.binds();
+        let [nodes, triangles] = self.points.surfaces.binds();
         let inputs = [
             sigma_t,
             clamp,
             Bind::Texture(&self.medium.blocks.texture),
             nodes,
             triangles,
-            Bind::Buffer(&self.patches.grids),
-            Bind::Buffer(&on_patches),
+            Bind::Buffer(&self.points.corners),
+            Bind::Buffer(&on_surfaces),
         ];
         let uncollided = self.field("light straight from surfaces", lit_dims)?;
         self.dispatch("uncollided", &params, &inputs, &uncollided, lit_dims)?;
@@ -163,21 +176,21 @@ impl Scene<'_> {
         let sources = with_sums(self.run, self.problem, &self.params.level, field)?;
         let residual = self.settle(&sources, effort)?;
         let scattered = self.scattered(&sources, &residual)?;
-        Ok(Bounced { on_patches, uncollided, coarser: params.coarser, scattered, residual })
+        Ok(Bounced { on_surfaces, uncollided, coarser: params.coarser, scattered, residual })
     }
 
-    /// E on both sides of points, by what the medium scatters and by what arrived on patches before.
+    /// E on both sides of all points, by what the medium scatters and by what arrived on surfaces before.
     fn irradiances(
         &self,
-        points: &Points,
         scattered: &Texture,
-        on_patches: &Buffer,
+        on_surfaces: &Buffer,
         what_for: Use,
     ) -> Result<Buffer, NodeError> {
         let gpu = self.run.gpu;
-        let found = points.irradiances(self.run)?;
+        let points = &self.points;
+        let found = points.irradiances(gpu)?;
         let sampler = gpu.linear_sampler();
-        let [nodes, triangles] = self.surfaces.binds();
+        let [nodes, triangles] = self.points.surfaces.binds();
         let inputs = [
             Bind::Texture(&self.medium.sigma_t),
             Bind::Sampler(&sampler),
@@ -186,17 +199,15 @@ impl Scene<'_> {
             nodes,
             triangles,
             Bind::Buffer(&points.list),
-            Bind::Buffer(&self.patches.grids),
-            Bind::Buffer(on_patches),
+            Bind::Buffer(&self.points.corners),
+            Bind::Buffer(on_surfaces),
             Bind::Buffer(&self.list),
         ];
         let pack = ("pack", self.beams.pack().to_string());
-        let [of_camera, of_patches] = DIRECTIONS;
-        let directions = if what_for == Use::Camera { of_camera } else { of_patches };
         let choices = [
             pack,
-            ("narrow", (what_for == Use::Patches).to_string()),
-            ("directions", directions.to_string()),
+            ("narrow", (what_for != Use::Camera).to_string()),
+            ("directions", what_for.n_directions().to_string()),
             ("channels", self.channels.count.to_string()),
         ];
         let stage = gpu.stage("isotropic_residual/surface_light", &choices)?;
@@ -250,7 +261,7 @@ impl Scene<'_> {
     }
 }
 
-/// How many of the lattice's cells one that looks for patches stands for, along an axis.
+/// How many of the lattice's cells one that looks for surfaces stands for, along an axis.
 fn coarser(dims: [usize; 3], most: usize) -> usize {
     let mut coarser = 1;
     while dims.iter().all(|n| n % (2 * coarser) == 0)

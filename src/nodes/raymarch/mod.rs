@@ -117,7 +117,6 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         return Err(NodeError::new(ELSEWHERE));
     }
     let surfaces = Surfaces::new(gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
-    let [nodes, triangles] = surfaces.binds();
     let gathered = residual.and_then(|residual| residual.surface_light.as_deref());
     if gathered.is_some_and(|light| !light.is_of(&surfaces)) {
         return Err(NodeError::new(
@@ -138,7 +137,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let (clamp, around) = (gpu.linear_sampler(), gpu.latlong_sampler());
     let [flame, temperature, blackbodies] = emission.grids();
     let nothing = gpu.buffer_from("no light on surfaces", &[[0.0_f32; 4]; 2], "")?;
-    let [light, grids] = gathered.map_or([Bind::Buffer(&nothing); 2], SurfaceLight::binds);
+    let [light, corners] = gathered.map_or([Bind::Buffer(&nothing); 2], SurfaceLight::binds);
+    let [nodes, triangles] = gathered.map_or(&surfaces, SurfaceLight::surfaces).binds();
     let inputs = [
         Bind::Texture(&medium.sigma_t),
         Bind::Sampler(&clamp),
@@ -156,7 +156,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         temperature,
         blackbodies,
         light,
-        grids,
+        corners,
         Bind::Texture(&depths.star.texture),
     ];
 

@@ -18,7 +18,7 @@
 //! Tested: shape of the box in voxels, volumes and means in closed form, the cloud in its module.
 
 mod cloud;
-mod noise;
+pub mod noise;
 mod puffs;
 
 use crate::volume::dense::Dense;
