@@ -123,6 +123,11 @@ const HAS_GATHERED: bool = {gathered};
 const HAS_SHADOWS: bool = {shadows};
 const HAS_WIDENING: bool = {widening};
 const HAS_EMISSION: bool = {emission};
+const HAS_BEAMS: bool = {beams};
+// Whether lobes have a direction; where g is 0 they have none.
+const HAS_LOBES: bool = {lobes};
+// Whether there are empty blocks to pass.
+const SKIPS: bool = {skips};
 
 // A number where it is known when the shader is compiled: what is the same along the ray is then computed once.
 fn n_beams() -> u32 {
@@ -143,7 +148,7 @@ struct Layers {
 // The residual lobe's radiance per unit of sigma_s*, towards the camera.
 fn residual_radiance(p: vec3f, view: vec3f, c: u32) -> f32 {
     let m = layered(moments, linear_clamp, params.residual_channels, c, p);
-    let lobe = lobe_from_moments(m.x, params.g_star * m.yzw);
+    let lobe = lobe_from_moments(m.x, select(vec3f(0.0), params.g_star * m.yzw, HAS_LOBES));
     let shape = 1.0 - dot(lobe.yzw, view);
     return lobe.x * shape * shape;
 }
@@ -182,7 +187,9 @@ fn march(direction: vec3f, until: f32) -> Layers {
             if HAS_EMISSION {
                 layers.emission += through * length_m * (glow(params.eye + t.x * direction) + glow(far));
             }
-            n = max(n, floor((empty_until(blocks, params.eye, direction, far) - span.x) / (2.0 * dt) - 0.75));
+            if SKIPS {
+                n = max(n, floor((empty_until(blocks, params.eye, direction, far) - span.x) / (2.0 * dt) - 0.75));
+            }
         }
         if n >= n_pairs {
             break;
@@ -201,9 +208,11 @@ fn march(direction: vec3f, until: f32) -> Layers {
         // Optical depths at the middle of the steps: at their starts the light would be up to 16 % too bright.
         let tau_c = layers.tau + dot(seen, vec2f(0.5 * step_tau.x, step_tau.x + 0.5 * step_tau.y));
         let segment = Segment(sharp - end, near + far, tau_c, 2.0 * dt);
-        let scattered = scatter_beams(segment, p, direction);
-        layers.single += scattered.single;
-        layers.forward += scattered.forward;
+        if HAS_BEAMS {
+            let scattered = scatter_beams(segment, p, direction);
+            layers.single += scattered.single;
+            layers.forward += scattered.forward;
+        }
         if HAS_RESIDUAL {
             layers.residual += segment.reach * scatter * residual_of(p, direction);
         }

@@ -86,13 +86,14 @@ fn describe(spec: &NodeSpec) -> String {
 }
 
 fn port_row(port: &PortSpec) -> Vec<String> {
-    let how = match (port.many, port.optional) {
+    let how = match (port.many, port.absent.is_some()) {
         (false, false) => "",
         (true, false) => " (many)",
         (false, true) => " (optional)",
         (true, true) => " (many, optional)",
     };
-    vec![port.name.to_owned(), format!("{}{how}", port.kind), port.doc.to_owned()]
+    let absent = port.absent.map_or(String::new(), |meaning| format!("; without it {meaning}"));
+    vec![port.name.to_owned(), format!("{}{how}", port.kind), format!("{}{absent}", port.doc)]
 }
 
 fn describe_param(param: &ParamSpec, indent: &str, text: &mut String) {
@@ -133,6 +134,9 @@ struct PortJson {
     kind: String,
     many: bool,
     optional: bool,
+    /// What it means that it stays empty.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    absent: Option<&'static str>,
     /// The parameter that says how many frames apart its values are, between which it fades.
     #[serde(skip_serializing_if = "Option::is_none")]
     faded_by: Option<&'static str>,
@@ -183,8 +187,8 @@ impl NodeJson {
 
 impl PortJson {
     fn of(port: &'static PortSpec) -> Self {
-        let PortSpec { name, kind, many, optional, faded_by, doc } = *port;
-        Self { name, kind: kind.to_string(), many, optional, faded_by, doc }
+        let PortSpec { name, kind, many, absent, faded_by, doc } = *port;
+        Self { name, kind: kind.to_string(), many, optional: absent.is_some(), absent, faded_by, doc }
     }
 }
 

@@ -54,12 +54,20 @@ pub struct Args {
     /// Write what it cost, as JSON: times, memory, each node.
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
+    /// Model everything, also what the scene does not require (`tyndall explain` says what that is): to see
+    /// what that costs and changes.
+    #[arg(long)]
+    pub full: bool,
     /// auto, cpu, or a part of an adapter's name (`tyndall doctor` lists them).
     #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = AdapterChoice::from_str)]
     pub adapter: AdapterChoice,
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+/// `640x480`.
+///
+/// # Errors
+/// What to write instead.
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |digits: &str| digits.parse::<u32>().ok().filter(|pixels| *pixels > 0);
     let sides = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
     sides.ok_or_else(|| "write the width, x, the height, both at least 1: 640x480".to_owned())
@@ -209,6 +217,7 @@ impl Job<'_> {
             Some(session) => session,
             none => none.insert(Session::open(&self.args.adapter)?),
         };
+        session.set_pruning(!self.args.full);
         let show = &mut |event: &_| progress.show(event);
         let solved = session.solve(&document, Target::Nodes(&names), &self.cancel, show);
         if solved.evaluation.cancelled {

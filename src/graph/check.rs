@@ -183,7 +183,7 @@ fn check_input(
         }
     }
     let message = match sources.len() {
-        0 if is_needed && !port.optional => {
+        0 if is_needed && port.absent.is_none() => {
             let givers = givers(catalog, port);
             format!("input '{}' is empty; wire {} into it, which {givers}", port.name, port.kind)
         }

@@ -6,6 +6,7 @@
 //! without outputs is there for its effect: it always runs and is never cached.
 //! Values live until the evaluation is dropped. Tested with toy nodes that count their runs.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use indexmap::IndexMap;
@@ -13,6 +14,7 @@ use indexmap::IndexMap;
 use super::cache::Cache;
 use super::key::{InputKey, Key};
 use super::plan::{Job, Plan, Source, Work};
+use super::report::Report;
 use super::spec::NodeSpec;
 use super::value::Value;
 
@@ -52,6 +54,8 @@ pub enum Event {
         cpu_ms: f64,
         /// Size of its outputs, in bytes.
         bytes: u64,
+        /// What it says of its run, also where that was long ago.
+        report: Arc<Report>,
     },
     /// A node cannot run, or its run failed.
     Failed {
@@ -185,7 +189,8 @@ fn run_job(
             outputs
         }
     };
-    on_event(Event::Finished { name: name.clone(), cached, cpu_ms, bytes: outputs.bytes() });
+    let report = Arc::clone(outputs.report());
+    on_event(Event::Finished { name: name.clone(), cached, cpu_ms, bytes: outputs.bytes(), report });
     Ok(Outcome::Done { spec, key, outputs })
 }
 

@@ -130,8 +130,8 @@ mod tests {
         ParamSpec::int("frame", 0).or_null().timed(Timing::Frame),
     ];
     const INPUTS: &[PortSpec] = &[
-        PortSpec::new("x", PortType::Light, "").many().optional(),
-        PortSpec::new("y", PortType::Light, "").many().optional(),
+        PortSpec::new("x", PortType::Light, "").many().optional(""),
+        PortSpec::new("y", PortType::Light, "").many().optional(""),
     ];
     static SPEC: NodeSpec = spec("kind", 1);
     static NEXT_VERSION: NodeSpec = spec("kind", 2);

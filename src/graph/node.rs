@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::file::FileState;
 use super::params::Params;
+use super::report::Report;
 use super::spec::NodeSpec;
 use super::value::Value;
 
@@ -92,6 +93,11 @@ impl Inputs {
         &self.ports[self.place(port)]
     }
 
+    /// The values of all inputs.
+    pub fn all(&self) -> impl Iterator<Item = &Value> {
+        self.ports.iter().flatten()
+    }
+
     fn place(&self, port: &str) -> usize {
         let place = self.spec.inputs.iter().position(|spec| spec.name == port);
         place.unwrap_or_else(|| panic!("{} declares no input '{port}'", self.spec.id))
@@ -103,17 +109,28 @@ impl Inputs {
 pub struct Outputs {
     values: Arc<[Value]>,
     written: Arc<[FileState]>,
+    report: Arc<Report>,
 }
 
 impl Outputs {
     /// One value for each output.
     pub fn new(values: impl Into<Arc<[Value]>>) -> Self {
-        Self { values: values.into(), written: Arc::default() }
+        Self { values: values.into(), written: Arc::default(), report: Arc::default() }
     }
 
     /// And the files that the node wrote, as it left them.
     pub fn with_written(self, files: impl Into<Arc<[FileState]>>) -> Self {
         Self { written: files.into(), ..self }
+    }
+
+    /// And what the node says of its run.
+    pub fn with_report(self, report: Report) -> Self {
+        Self { report: Arc::new(report), ..self }
+    }
+
+    /// What the node said when it ran.
+    pub fn report(&self) -> &Arc<Report> {
+        &self.report
     }
 
     /// One value for each output.
@@ -196,7 +213,7 @@ mod tests {
         purpose: "",
         doc: "",
         inputs: &[
-            PortSpec::new("a", PortType::Light, "").optional(),
+            PortSpec::new("a", PortType::Light, "").optional(""),
             PortSpec::new("b", PortType::Light, "").many(),
         ],
         outputs: &[],

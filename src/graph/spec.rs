@@ -79,11 +79,11 @@ pub struct PortSpec {
     pub kind: PortType,
     /// An input that takes many wires.
     pub many: bool,
-    /// An input that may stay empty.
-    pub optional: bool,
+    /// Of an input that may stay empty, what that means.
+    pub absent: Option<&'static str>,
     /// An input that fades: the parameter of its node that says how many frames apart its values are.
     pub faded_by: Option<&'static str>,
-    /// What it is; for an optional input also what its absence means.
+    /// What it is.
     pub doc: &'static str,
 }
 
@@ -137,7 +137,7 @@ impl NodeSpec {
 impl PortSpec {
     /// An input that takes exactly one wire, or an output.
     pub const fn new(name: &'static str, kind: PortType, doc: &'static str) -> Self {
-        Self { name, kind, many: false, optional: false, faded_by: None, doc }
+        Self { name, kind, many: false, absent: None, faded_by: None, doc }
     }
 
     /// Takes many wires; at least one, unless it is optional too.
@@ -146,9 +146,9 @@ impl PortSpec {
         self
     }
 
-    /// May stay empty.
-    pub const fn optional(mut self) -> Self {
-        self.optional = true;
+    /// May stay empty, which means `absent`: "there are only suns".
+    pub const fn optional(mut self, absent: &'static str) -> Self {
+        self.absent = Some(absent);
         self
     }
 
@@ -224,7 +224,7 @@ mod tests {
             category: Category::Volume,
             purpose: "a shape",
             doc: "",
-            inputs: &[PortSpec::new("mask", PortType::Image, "").many().optional()],
+            inputs: &[PortSpec::new("mask", PortType::Image, "").many().optional("")],
             outputs: OUT,
             params: &[],
         };

@@ -3,6 +3,7 @@
 use std::cell::RefCell;
 
 use super::eval::{Host, Inputs, NodeError, NodeJob, Outputs};
+use super::report::{Decision, Report};
 use super::spec::{Catalog, Category, NodeSpec, ParamSpec, PortSpec, PortType};
 use super::value::Value;
 
@@ -27,14 +28,17 @@ pub static SUM: NodeSpec = kind("sum", &[PortSpec::new("lights", PortType::Light
 /// a − b and a + b, without b the negative and a.
 pub static PAIR: NodeSpec = kind(
     "pair",
-    &[PortSpec::new("a", PortType::Light, ""), PortSpec::new("b", PortType::Light, "").optional()],
+    &[
+        PortSpec::new("a", PortType::Light, ""),
+        PortSpec::new("b", PortType::Light, "").optional("nothing is taken off"),
+    ],
     &[PortSpec::new("difference", PortType::Light, ""), PortSpec::new("total", PortType::Light, "")],
     &[],
 );
 /// Fades from one value to the next.
 pub static FADE: NodeSpec = kind(
     "fade",
-    &[PortSpec::new("light", PortType::Light, "").optional().faded_by("apart")],
+    &[PortSpec::new("light", PortType::Light, "").optional("there is none").faded_by("apart")],
     &[LIGHT],
     &[ParamSpec::int("apart", 4).between(0.0, 100.0)],
 );
@@ -103,7 +107,10 @@ impl Host for ToyHost {
         Ok(match job.spec.id {
             "number" => match job.params.f64("x") {
                 7.0 => return Err(NodeError::new("7 is unlucky; write another number")),
-                x => Outputs::new([light(x)]),
+                x => Outputs::new([light(x)]).with_report(Report {
+                    decisions: vec![Decision::kept("toy", "the number", "it is lucky", format!("x = {x}"))],
+                    ..Report::default()
+                }),
             },
             // The first counts double, so that the order of the wires shows.
             "sum" => {

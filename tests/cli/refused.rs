@@ -173,7 +173,7 @@ fn graphs_with_no_or_several_outputs() {
 fn words_that_are_no_subcommand() {
     let desk = Desk::new();
     desk.run_blind(&["rendr", "g.json"]).refused(
-        "error: there is no subcommand 'rendr'; did you mean 'render'? allowed are render, inspect, compare, \
+        "error: there is no subcommand 'rendr'; did you mean 'render'? allowed are render, explain, inspect, compare, \
          nodes, doctor\n",
     );
     desk.run_blind(&["g.json"])

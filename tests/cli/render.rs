@@ -35,7 +35,7 @@ fn picture_and_its_costs() {
     let names: Vec<&str> = nodes.iter().map(|node| node["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["ball", "medium", "sun", "split", "beams", "camera", "march", "save"]);
     let keys: Vec<&String> = nodes[6].as_object().unwrap().keys().collect();
-    assert_eq!(keys, ["name", "type", "cpu_ms", "gpu_ms", "bytes", "cached"]);
+    assert_eq!(keys, ["name", "type", "cpu_ms", "gpu_ms", "bytes", "cached", "decisions"]);
     assert_eq!((&nodes[6]["type"], &nodes[6]["cached"]), (&Json::from("raymarch"), &Json::from(false)));
 }
 

@@ -145,13 +145,17 @@ fn identity_of_the_host_is_in_the_key() {
 fn events_tell_it_as_it_happens() {
     let mut bench = Bench::new();
     bench.run(Target::Nodes(&["a"]));
-    let [Event::Started { name }, Event::Finished { cached, bytes, cpu_ms, .. }] = &bench.events[..] else {
+    let [Event::Started { name }, Event::Finished { cached, bytes, cpu_ms, report, .. }] = &bench.events[..]
+    else {
         panic!("{:?}", bench.events);
     };
     assert_eq!((name.as_str(), *cached, *bytes), ("a", false, 8));
     assert!(*cpu_ms >= 0.0);
+    assert_eq!(report.decisions[0].data, "x = 2");
+    // A node that did not run again still tells it.
+    let report = Arc::clone(report);
     bench.run(Target::Nodes(&["a"]));
-    let cached = Event::Finished { name: "a".to_owned(), cached: true, cpu_ms: 0.0, bytes: 8 };
+    let cached = Event::Finished { name: "a".to_owned(), cached: true, cpu_ms: 0.0, bytes: 8, report };
     assert_eq!(bench.events, [cached]);
 }
 

@@ -3,13 +3,13 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use super::{NodeKind, Run};
+use super::{NodeKind, Rules, Run};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, Params, PortSpec, PortType, Value};
 use crate::image;
 use crate::light::BRIGHTEST;
 use crate::light::environment::{Environment, Map};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "environment",

@@ -3,16 +3,17 @@ use serde_json::{Value as Json, json};
 
 use super::level::{BalanceParams, BatchParams, ChannelTexel, DirectionTexel, LevelParams, Problem};
 use super::oracle::{Level, Options, Quality, Scheme, solve};
+use super::plan::plan;
 use super::sources::SourceParams;
-use super::{effort, oracle, solver, sources};
+use super::{oracle, solver, sources};
 use crate::gpu::{Format, Gpu};
 use crate::graph::Value;
 use crate::nodes::oracle_scene::corners::HIDDEN;
 use crate::nodes::principal_propagation::oracle::mean_irradiance;
 use crate::nodes::spherical_propagation::oracle::mean_irradiance_point;
 use crate::nodes::testing::{
-    Filling, Fire, Scene, assert_close, assert_layout, filtered, flat, gpu, largest, layers, oracle_light,
-    output, point, run, states, sun, taus, with_run,
+    Filling, Fire, Scene, assert_close, assert_layout, filtered, flat, full_output, gpu, largest, layers,
+    oracle_light, output, point, run, states, sun, taus, with_run,
 };
 use crate::optics::directions::LineSet;
 use crate::volume::field::Field;
@@ -38,15 +39,17 @@ fn gpu_sources(gpu: &Gpu, medium: &Value, beams: &Value) -> Vec<Field<glam::DVec
     let inputs = [("medium", medium), ("beams", beams)];
     with_run(gpu, "isotropic_residual", json!({}), &inputs, |run| {
         let (medium, beams): (&Medium, &Beams) = (medium.get(), beams.get());
-        let channels = Channels::of(medium, beams);
-        let problem = Problem::new(medium, &channels, beams.ambient, LineSet::Lines14);
+        let channels = plan(run).unwrap().channels;
+        let problem = Problem::new(medium, &channels, beams.ambient, LineSet::Lines14, true);
         let sources = sources::sources(run, medium, beams, &channels, &problem).unwrap();
         layers(gpu, &sources.field, channels.count)
     })
 }
 
 fn residual(gpu: &Gpu, params: Json, medium: &Value, beams: &Value) -> Value {
-    output(gpu, "isotropic_residual", params, &[("medium", medium), ("beams", beams)])
+    // Where nothing scatters it is left out unless it is asked for.
+    let make = if medium.get::<Medium>().albedo == [0.0; 3] { full_output } else { output };
+    make(gpu, "isotropic_residual", params, &[("medium", medium), ("beams", beams)])
 }
 
 /// A bright, a dim and a colored sun, of different spreads.
@@ -293,12 +296,12 @@ fn flame_without_smoke_shines() {
     let result = with_run(gpu, "isotropic_residual", json!({}), &[("medium", &medium)], |run| {
         let medium: &Medium = medium.get();
         let channels = Channels { count: 1, color: [1.0; 3] };
-        let problem = Problem::new(medium, &channels, [0.0; 3], LineSet::Lines14);
+        let problem = Problem::new(medium, &channels, [0.0; 3], LineSet::Lines14, true);
         let texels: Vec<[f32; 4]> = q0.data.iter().map(|q| [*q as f32, 0.0, 0.0, 0.0]).collect();
         let field = gpu.texture3_from("sources", dims, Format::Rgba32Float, &texels, "").unwrap();
         let power = (q0.data.iter().sum::<f64>() * volume) as f32;
         let sums = gpu.buffer_from("powers of sources", &[power, 0.0, 0.0, 0.0], "").unwrap();
-        let (sources, effort) = (sources::Sources { field, sums }, effort(run).unwrap());
+        let (sources, effort) = (sources::Sources { field, sums }, plan(run).unwrap().effort);
         solver::solve(run, medium, &sources, &problem, effort, channels, 1 << 30).unwrap()
     });
     let sources = oracle::Sources { q0, ..oracle::Sources::new(dims, 0.0) };
@@ -318,10 +321,10 @@ fn several_batches_give_what_one_gives() {
     let solved = |batch_bytes| {
         let result = with_run(gpu, "isotropic_residual", json!({}), &inputs, |run| {
             let (medium, beams): (&Medium, &Beams) = (medium.get(), beams.get());
-            let channels = Channels::of(medium, beams);
-            let problem = Problem::new(medium, &channels, beams.ambient, LineSet::Lines14);
+            let channels = plan(run).unwrap().channels;
+            let problem = Problem::new(medium, &channels, beams.ambient, LineSet::Lines14, true);
             let sources = sources::sources(run, medium, beams, &channels, &problem).unwrap();
-            solver::solve(run, medium, &sources, &problem, effort(run).unwrap(), channels, batch_bytes)
+            solver::solve(run, medium, &sources, &problem, plan(run).unwrap().effort, channels, batch_bytes)
         });
         let moments = result.unwrap().moments;
         layers(gpu, &moments, 3).iter().flat_map(flat).collect::<Vec<f64>>()
@@ -360,7 +363,7 @@ fn packs_of_beams_beyond_a_column_are_found() {
     let medium = scene.medium(gpu);
     let five: Vec<Beam> = suns(false).into_iter().chain(suns(false)).take(5).collect();
     let beams = scene.propagate(gpu, &medium, &five, [0.0; 3]);
-    let atlas: &TauAtlas = &beams.get::<Beams>().tau;
+    let atlas: &TauAtlas = beams.get::<Beams>().tau.as_ref().unwrap();
     assert_eq!(atlas.packs_per_column, 1);
     assert_eq!(atlas.origin(1), [0, 4, 0]);
     let taus = taus(gpu, beams.get());
@@ -387,10 +390,11 @@ fn v_cycles_take_no_number_of_sweeps() {
 
 #[test]
 fn layouts_are_those_of_the_shaders() {
-    assert_layout::<ChannelTexel>("isotropic_residual/sweep.wgsl", "Channel", &[]);
-    assert_layout::<LevelParams>("isotropic_residual/sweep.wgsl", "Level", &[]);
-    assert_layout::<DirectionTexel>("isotropic_residual/sweep.wgsl", "Direction", &[]);
-    assert_layout::<BatchParams>("isotropic_residual/sweep.wgsl", "Batch", &[]);
+    let lobes = [("lobes", "true")];
+    assert_layout::<ChannelTexel>("isotropic_residual/sweep.wgsl", "Channel", &lobes);
+    assert_layout::<LevelParams>("isotropic_residual/sweep.wgsl", "Level", &lobes);
+    assert_layout::<DirectionTexel>("isotropic_residual/sweep.wgsl", "Direction", &lobes);
+    assert_layout::<BatchParams>("isotropic_residual/sweep.wgsl", "Batch", &lobes);
     assert_layout::<BalanceParams>("isotropic_residual/balance.wgsl", "BalanceParams", &[]);
     assert_layout::<SourceParams>(
         "isotropic_residual/sources.wgsl",

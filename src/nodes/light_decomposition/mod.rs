@@ -7,18 +7,23 @@
 //! frame, flickers by 1.1e-4 instead of 3.1e-3 under the sky of `data` (`tests/flicker.rs`, which says how that is
 //! measured), and by 1.5e-4, 1.8e-4 and 4.7e-4 instead of 2.8e-3, 1.0e-2 and 9.5e-3 under three skies more.
 
-use super::{NodeKind, Run, no_files};
-use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
-use crate::light::environment::Environment;
+use std::sync::Arc;
+
+use super::{NodeKind, Rules, Run, no_files};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Report, Value};
+use crate::light::environment::{Environment, Map};
 use crate::light::{Light, Ordinate, Ordinates};
+use crate::planner;
 use crate::wire::Importance;
+
+use region::Excess;
 
 mod median_cut;
 mod region;
 mod summed_area;
 mod uniform;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Cheap };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "light_decomposition",
@@ -29,21 +34,15 @@ static SPEC: NodeSpec = NodeSpec {
           becomes ambient light, which needs no beams; the rest is split into regions, each a beam with the region's irradiance \
           and its mean direction. How wide a region is counts where prefilter says so.",
     inputs: &[
-        PortSpec::new(
-            "environment",
-            PortType::Environment,
-            "light from all directions; without it there are only suns",
-        )
-        .optional(),
-        PortSpec::new("lights", PortType::Light, "suns; without them there is only the environment")
-            .many()
-            .optional(),
+        PortSpec::new("environment", PortType::Environment, "light from all directions")
+            .optional("there are only suns"),
+        PortSpec::new("lights", PortType::Light, "suns").many().optional("there is only the environment"),
         PortSpec::new(
             "importance",
             PortType::Importance,
-            "where light matters to the picture: there median_cut makes smaller regions; without it all light counts alike",
+            "where light matters to the picture: there median_cut makes smaller regions",
         )
-        .optional()
+        .optional("all light counts alike")
         .faded_by("recut_frames"),
     ],
     outputs: &[PortSpec::new("ordinates", PortType::Ordinates, "the beams, for principal_propagation")],
@@ -82,16 +81,17 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         }
     }
     if let Some(environment) = run.inputs.maybe::<Environment>("environment") {
-        light.ambient = environment.minimum();
-        let count = run.params.i64("count") as usize;
-        let by_importance = || run.inputs.faded::<Importance>("importance").into_iter();
-        let splits: Vec<_> = match run.params.text("method") {
-            "uniform" => vec![(uniform::split(environment, count), 1.0)],
-            _ if by_importance().next().is_none() => vec![(median_cut::split(environment, count, None), 1.0)],
-            _ => by_importance()
-                .map(|(by, share)| (median_cut::split(environment, count, Some(&by.light)), share))
-                .collect(),
+        let least = environment.minimum();
+        let is_constant = matches!(environment, Environment::Constant(_));
+        let (flows_in, decision) = planner::constant_light(least, is_constant, run.prune);
+        run.tell(Report { decisions: vec![decision], ..Report::default() });
+        light.ambient = if flows_in { least } else { [0.0; 3] };
+        let map = match environment {
+            Environment::Map(map) => Some(map.clone()),
+            Environment::Constant(_) if flows_in => None,
+            Environment::Constant(radiance) => Some(even_map(*radiance)),
         };
+        let splits = map.map_or_else(Vec::new, |map| split(run, &Excess::new(&map, light.ambient)));
         for ((ordinates, from_all_sides), share) in splits {
             light.ordinates.extend(
                 ordinates.into_iter().map(|ordinate| Ordinate {
@@ -106,6 +106,29 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     }
     let bytes = (light.ordinates.len() * size_of::<Ordinate>()) as u64;
     Ok(vec![Value::new(PortType::Ordinates, bytes, light)])
+}
+
+/// The ordinates of a map, and the radiance of what has no direction.
+type Cut = (Vec<Ordinate>, [f64; 3]);
+
+/// A map as ordinates: each cut that fades, with its share.
+fn split(run: &Run, excess: &Excess) -> Vec<(Cut, f64)> {
+    let count = run.params.i64("count") as usize;
+    let by_importance = || run.inputs.faded::<Importance>("importance").into_iter();
+    match run.params.text("method") {
+        "uniform" => vec![(uniform::split(excess, count), 1.0)],
+        _ if by_importance().next().is_none() => vec![(median_cut::split(excess, count, None), 1.0)],
+        _ => by_importance()
+            .map(|(by, share)| (median_cut::split(excess, count, Some(&by.light)), share))
+            .collect(),
+    }
+}
+
+/// A map that is the same everywhere, for who wants ordinates of it.
+fn even_map(radiance: [f64; 3]) -> Map {
+    let (width, height) = (128, 64);
+    let texels = Arc::new(vec![radiance.map(|l| l as f32); width * height]);
+    Map { width, height, texels, scale: 1.0, rotate_y: 0.0, stack: None }
 }
 
 #[cfg(test)]

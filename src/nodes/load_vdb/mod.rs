@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
-use super::{NodeKind, Run, transform};
+use super::{NodeKind, Rules, Run, transform};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, Params, PortSpec, PortType, Timing, Value};
 use crate::volume::sequence::{Playback, Sequence};
 use crate::volume::{Volume, vdb};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "load_vdb",

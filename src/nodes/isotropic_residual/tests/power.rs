@@ -60,7 +60,7 @@ fn power_out_is_power_in() {
     for (g, albedo) in [(-0.9, 0.5), (0.5, 1.0), (0.9, 0.0)] {
         let scene = Scene { g, albedo: [albedo; 3], ..Scene::new([16; 3], Filling::Random, 5.0) };
         for Lit { what, scene, medium, beams } in every_light(gpu, &scene) {
-            let swept = |n: usize| residual(gpu, json!({ "sweeps": n }), &medium, &beams);
+            let swept = |n: usize| residual(gpu, json!({ "sweeps": n, "directions": 14 }), &medium, &beams);
             let (before, after) = (swept(3), swept(4));
             let factor = after.get::<Residual>().balance[0];
             let (before, after) = (states(gpu, &before).remove(0), states(gpu, &after).remove(0));
