@@ -56,8 +56,9 @@ fn every_light(gpu: &Gpu, scene: &Scene) -> Vec<Lit> {
 fn power_out_is_power_in() {
     // All from what can be read back. In a sweep k sigma_t phi h^3 over the cells and what leaves make up
     // what the cells gave, Q0 + sigma_s* phi_before, and what came in; the factor is on top.
+    // Neither white in constant light nor black: then there is nothing to solve.
     let Some(gpu) = gpu() else { return };
-    for (g, albedo) in [(-0.9, 0.5), (0.5, 1.0), (0.9, 0.0)] {
+    for (g, albedo) in [(-0.9, 0.5), (0.5, 0.999), (0.9, 0.01)] {
         let scene = Scene { g, albedo: [albedo; 3], ..Scene::new([16; 3], Filling::Random, 5.0) };
         for Lit { what, scene, medium, beams } in every_light(gpu, &scene) {
             let swept = |n: usize| residual(gpu, json!({ "sweeps": n, "directions": 14 }), &medium, &beams);
@@ -77,10 +78,10 @@ fn power_out_is_power_in() {
             let absorbed = sum(&|idx| scene.sigma_t.data[idx] * scaled.sigma_a_ratio * after.data[idx].x);
             let leaving = factor * (incoming + scattered - taken);
             let balance = (absorbed + leaving) / incoming;
-            assert!(incoming > 0.0 || albedo == 0.0, "{what}: no power");
-            assert!(incoming == 0.0 || (balance - 1.0).abs() < 1e-5, "{what} g {g} {albedo}: {balance}");
+            assert!(incoming > 0.0, "{what}: no power");
+            assert!((balance - 1.0).abs() < 1e-5, "{what} g {g} {albedo}: {balance}");
             // And the sum is not trivially so: a factor of 1 would miss it.
-            assert!((factor - 1.0).abs() > 1e-5 || albedo == 0.0, "{what} g {g} {albedo}: {factor}");
+            assert!((factor - 1.0).abs() > 1e-5 || albedo < 0.1, "{what} g {g} {albedo}: {factor}");
         }
     }
 }
