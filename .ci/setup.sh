@@ -66,7 +66,7 @@ rust_is_new_enough() { has cargo && has rustc && at_least "$(rust_found)" "$(rus
 
 # By rustup, into the home folder.
 install_rust() {
-    local rustup="curl --proto '=https' --tlsv1.2 -sSf https://sh.rustup.rs | sh -s -- -y"
+    local rustup="curl --proto '=https' --tlsv1.2 -sSf https://static.rust-lang.org/rustup/rustup-init.sh | sh -s -- -y"
     if has rustup; then
         agree "update Rust with rustup?" || fail "not updated; to do it later, type: rustup update stable"
         show_and_run rustup update stable

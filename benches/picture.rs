@@ -1,14 +1,14 @@
 //! Where the time of a picture goes: `cargo bench --bench picture -- GRAPH...`
 //!
 //! Renders each graph cold and warm, moves its camera, and prints the wall clock of all three, the cost
-//! of each node, and the GPU time of each stage beside what a plain copy of the same device moves in this
-//! run. Timings belong here, never into tests.
+//! of each node, and the GPU time of each stage over the time in which a plain copy of this run moves what the
+//! stage moves: the ratios of `planner::cost`. Timings belong here, never into tests.
 
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
 
-use tyndall::gpu::{AdapterChoice, Bind, Format, Gpu};
+use tyndall::gpu::AdapterChoice;
 use tyndall::graph::{CancelToken, Document, Target};
 use tyndall::nodes;
 use tyndall::session::{Session, Solved};
@@ -23,7 +23,9 @@ fn main() -> anyhow::Result<()> {
         let mut session = Session::open(&adapter)?;
         let report = session.gpu().report().clone();
         println!("# {graph} on {} ({})", report.name, report.driver);
-        println!("copy kernel: {:.1} GB/s read and written", copy_bandwidth(session.gpu())?);
+        let explained = session.explain(&document, Target::Sinks)?;
+        println!("copy kernel: {:.2} GB/s read and written", explained.copy_gb_per_s);
+        session.forget();
         solve("cold", &mut session, &document);
         // A fresh cache on the same device: pipelines are compiled, nothing else is known.
         session.forget();
@@ -58,8 +60,19 @@ fn main() -> anyhow::Result<()> {
             entry.0 += 1;
             entry.1 += time.gpu_ms;
         }
+        // Copied again, because the machine may be slower by now.
+        let copy_gb_per_s = session.gpu().copy_gb_per_s()?;
+        println!("copy kernel: {copy_gb_per_s:.2} GB/s read and written");
+        let works: Vec<_> = explained.nodes.iter().flat_map(|node| &node.report.stages).collect();
         for (stage, (count, ms)) in stages {
-            println!("  {stage:32} {count:5} x {ms:9.2} ms");
+            let moved: u64 =
+                works.iter().filter(|work| work.stage == stage).filter_map(|work| work.moved_bytes).sum();
+            let floor_ms = moved as f64 / copy_gb_per_s * 1e-6;
+            let ratio = if moved > 0 { format!("{:8.2}", ms / floor_ms) } else { "       -".to_owned() };
+            println!(
+                "  {stage:36} {count:5} x {ms:9.2} ms {:8.1} MB {ratio} of its floor",
+                moved as f64 * 1e-6
+            );
         }
     }
     Ok(())
@@ -81,20 +94,4 @@ fn solve(what: &str, session: &mut Session, document: &Document) -> Solved {
 
 fn mib(bytes: u64) -> f64 {
     bytes as f64 / f64::from(1 << 20)
-}
-
-/// GB/s of a kernel that copies 128³ texels of 16 bytes, best of five.
-fn copy_bandwidth(gpu: &Gpu) -> anyhow::Result<f64> {
-    let dims = [128; 3];
-    let [from, to] =
-        [0, 1].map(|_| gpu.texture3("copied", dims, Format::Rgba32Float, "")).map(|texture| texture.unwrap());
-    let stage = gpu.stage("copy", &[])?;
-    let bound = stage.bind(gpu, &[128_u32, 128, 128, 0], &[Bind::Texture(&from)], &[Bind::Texture(&to)]);
-    let mut best = f64::INFINITY;
-    for _ in 0..6 {
-        let mut recorder = gpu.recorder("copy");
-        recorder.dispatch(&bound, dims);
-        best = best.min(recorder.finish()?);
-    }
-    Ok((from.bytes() + to.bytes()) as f64 / best * 1e-6)
 }

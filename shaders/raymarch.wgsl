@@ -123,6 +123,11 @@ const HAS_GATHERED: bool = {gathered};
 const HAS_SHADOWS: bool = {shadows};
 const HAS_WIDENING: bool = {widening};
 const HAS_EMISSION: bool = {emission};
+const HAS_BEAMS: bool = {beams};
+// Whether lobes have a direction; where g is 0 they have none.
+const HAS_LOBES: bool = {lobes};
+// Whether there are empty blocks to pass.
+const SKIPS: bool = {skips};
 
 // A number where it is known when the shader is compiled: what is the same along the ray is then computed once.
 fn n_beams() -> u32 {
@@ -143,7 +148,7 @@ struct Layers {
 // The residual lobe's radiance per unit of sigma_s*, towards the camera.
 fn residual_radiance(p: vec3f, view: vec3f, c: u32) -> f32 {
     let m = layered(moments, linear_clamp, params.residual_channels, c, p);
-    let lobe = lobe_from_moments(m.x, params.g_star * m.yzw);
+    let lobe = lobe_from_moments(m.x, select(vec3f(0.0), params.g_star * m.yzw, HAS_LOBES));
     let shape = 1.0 - dot(lobe.yzw, view);
     return lobe.x * shape * shape;
 }
@@ -182,7 +187,9 @@ fn march(direction: vec3f, until: f32) -> Layers {
             if HAS_EMISSION {
                 layers.emission += through * length_m * (glow(params.eye + t.x * direction) + glow(far));
             }
-            n = max(n, floor((empty_until(blocks, params.eye, direction, far) - span.x) / (2.0 * dt) - 0.75));
+            if SKIPS {
+                n = max(n, floor((empty_until(blocks, params.eye, direction, far) - span.x) / (2.0 * dt) - 0.75));
+            }
         }
         if n >= n_pairs {
             break;
@@ -201,9 +208,11 @@ fn march(direction: vec3f, until: f32) -> Layers {
         // Optical depths at the middle of the steps: at their starts the light would be up to 16 % too bright.
         let tau_c = layers.tau + dot(seen, vec2f(0.5 * step_tau.x, step_tau.x + 0.5 * step_tau.y));
         let segment = Segment(sharp - end, near + far, tau_c, 2.0 * dt);
-        let scattered = scatter_beams(segment, p, direction);
-        layers.single += scattered.single;
-        layers.forward += scattered.forward;
+        if HAS_BEAMS {
+            let scattered = scatter_beams(segment, p, direction);
+            layers.single += scattered.single;
+            layers.forward += scattered.forward;
+        }
         if HAS_RESIDUAL {
             layers.residual += segment.reach * scatter * residual_of(p, direction);
         }
@@ -241,6 +250,7 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
         let sharp = exp(-layers.tau);
         let through = exp(-spectrum(params.k) * layers.tau);
         let color = params.color.xyz;
+        var single = color * rgb(layers.single);
         var behind = sharp;
         var distance = layers.distance;
         if surface.triangle == NO_SURFACE {
@@ -248,6 +258,10 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
             var forward = color * rgb(layers.forward + (through - sharp) * spectrum(params.ambient));
             if HAS_STACK {
                 forward += environment_forward(turned, layers.tau);
+                // Where ordinates shine more evenly than the medium scatters the stack takes that back, and what
+                // is scattered once is the first that gives. Never more than there is.
+                single = max(single + min(forward, vec3f(0.0)), vec3f(0.0));
+                forward = max(forward, vec3f(0.0));
             }
             pixel.forward += vec4f(forward, 0.0);
             pixel.beauty += vec4f(forward + sharp * environment_radiance(turned), 0.0);
@@ -260,7 +274,6 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
             distance += sharp * surface.t;
             behind = 0.0;
         }
-        let single = color * rgb(layers.single);
         let residual = color * rgb(layers.residual);
         let emission = color * rgb(layers.emission);
         pixel.beauty += vec4f(single + residual + emission, 1.0 - behind);

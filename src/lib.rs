@@ -10,6 +10,7 @@ pub mod image;
 pub mod light;
 pub mod nodes;
 pub mod optics;
+pub mod planner;
 pub mod session;
 pub mod volume;
 pub mod wire;

@@ -9,10 +9,14 @@ use std::time::Instant;
 
 use crate::gpu::{AdapterChoice, Gpu, GpuError, shader_names, shader_text};
 use crate::graph::{
-    Cache, CancelToken, Document, Evaluation, Event, FileState, Host, Inputs, NodeError, NodeJob, Outcome,
-    Outputs, ParamKind, Plan, Target, evaluate,
+    Cache, CancelToken, Decision, Document, Evaluation, Event, FileState, Host, Inputs, NodeError, NodeJob,
+    Outcome, Outputs, ParamKind, Plan, Target, evaluate,
 };
-use crate::nodes::{self, Run};
+use crate::nodes::{self, Rules, Run};
+
+mod explain;
+
+pub use explain::{Explained, Explanation};
 
 /// The cache keeps results up to so many bytes, on CPU and GPU together, unless told otherwise.
 pub const CACHE_BYTES: u64 = 2 << 30;
@@ -21,6 +25,7 @@ pub const CACHE_BYTES: u64 = 2 << 30;
 pub struct Session {
     gpu: Gpu,
     cache: Cache,
+    prune: bool,
 }
 
 /// What came of a graph.
@@ -38,7 +43,7 @@ pub struct Solved {
 /// What a node cost.
 #[derive(Debug, Clone, PartialEq, serde::Serialize)]
 pub struct NodeCost {
-    /// The node.
+    /// The node; `camera@8` where it ran for the sake of another frame.
     pub name: String,
     /// Its kind.
     #[serde(rename = "type")]
@@ -51,6 +56,8 @@ pub struct NodeCost {
     pub bytes: u64,
     /// Whether its result was there already.
     pub cached: bool,
+    /// What the scene required of it, and what was left out.
+    pub decisions: Vec<Decision>,
 }
 
 impl Session {
@@ -59,12 +66,18 @@ impl Session {
     /// # Errors
     /// [`GpuError::Adapter`] says what is missing.
     pub fn open(adapter: &AdapterChoice) -> Result<Self, GpuError> {
-        Ok(Self { gpu: Gpu::open(adapter)?, cache: Cache::new(CACHE_BYTES) })
+        Ok(Self { gpu: Gpu::open(adapter)?, cache: Cache::new(CACHE_BYTES), prune: true })
     }
 
     /// The device.
     pub fn gpu(&self) -> &Gpu {
         &self.gpu
+    }
+
+    /// Whether what a scene does not require is left out, as it is unless told otherwise; else everything is
+    /// modeled, to see what that costs and changes.
+    pub fn set_pruning(&mut self, prune: bool) {
+        self.prune = prune;
     }
 
     /// Forgets all results; compiled stages stay.
@@ -84,18 +97,19 @@ impl Session {
         let start = Instant::now();
         self.gpu.take_peak_bytes();
         let plan = Plan::new(document, nodes::catalog(), target);
-        let host = NodeHost { gpu: &self.gpu, shaders: shader_hash(), gpu_ms: RefCell::default() };
+        let host = NodeHost::new(&self.gpu, self.prune);
         let mut costs = Vec::new();
         let evaluation = evaluate(&plan, &host, &mut self.cache, cancel, &mut |event| {
-            if let Event::Finished { name, cached, cpu_ms, bytes } = &event {
-                let kind = document.nodes.get(name).and_then(|node| nodes::kind(&node.type_id));
+            if let Event::Finished { name, cached, cpu_ms, bytes, report } = &event {
+                let work = plan.job(name).and_then(|job| job.work.as_ref().ok());
                 costs.push(NodeCost {
                     name: name.clone(),
-                    kind: kind.map_or("", |kind| kind.spec.id),
+                    kind: work.map_or("", |work| work.spec.id),
                     cpu_ms: *cpu_ms,
                     gpu_ms: host.gpu_ms.borrow().get(name).copied().filter(|_| !cached).unwrap_or(0.0),
                     bytes: *bytes,
                     cached: *cached,
+                    decisions: report.decisions.clone(),
                 });
             }
             on_event(&event);
@@ -118,13 +132,24 @@ impl Session {
 struct NodeHost<'a> {
     gpu: &'a Gpu,
     shaders: [u8; 32],
+    prune: bool,
+    /// Expensive nodes only say what they would do.
+    foretells: bool,
     gpu_ms: RefCell<HashMap<String, f64>>,
+}
+
+impl<'a> NodeHost<'a> {
+    fn new(gpu: &'a Gpu, prune: bool) -> Self {
+        Self { gpu, shaders: shader_hash(), prune, foretells: false, gpu_ms: RefCell::default() }
+    }
 }
 
 impl Host for NodeHost<'_> {
     fn identity(&self, job: &NodeJob) -> Result<Vec<u8>, NodeError> {
         let kind = nodes::kind(job.spec.id).expect("the plan holds kinds of the catalog");
         let mut identity = self.shaders.to_vec();
+        identity.push(u8::from(!self.prune && !matches!(kind.rules, Rules::None)));
+        identity.push(u8::from(self.foretells && matches!(kind.rules, Rules::Foretold(_))));
         for path in (kind.files)(job.params)? {
             // A file that is not there is the node's to report.
             identity.extend(FileState::of(&path).to_bytes());
@@ -134,17 +159,30 @@ impl Host for NodeHost<'_> {
 
     fn run(&self, job: &NodeJob, inputs: &Inputs) -> Result<Outputs, NodeError> {
         let kind = nodes::kind(job.spec.id).expect("the plan holds kinds of the catalog");
-        let run = Run { params: job.params, inputs, gpu: self.gpu, cancel: job.cancel };
+        let run = Run {
+            params: job.params,
+            inputs,
+            gpu: self.gpu,
+            cancel: job.cancel,
+            prune: self.prune,
+            report: RefCell::default(),
+        };
         self.gpu.take_ms();
-        let values = (kind.run)(&run);
+        let outputs = match self.foretells {
+            true => explain::foretell(&run, kind, inputs),
+            false => (kind.run)(&run).map(Outputs::new),
+        };
         // Asked also where the node failed, so that the next node does not get this one's error.
         let reported = self.gpu.check(job.spec.id);
-        let values = values?;
+        let outputs = outputs?.with_report(run.report.take());
         reported?;
         self.gpu_ms.borrow_mut().insert(job.name.to_owned(), self.gpu.take_ms());
+        if self.foretells {
+            return Ok(outputs);
+        }
         let written = job.spec.params.iter().filter(|param| matches!(param.kind, ParamKind::OutPath));
         let written = written.map(|param| FileState::of(job.params.path(param.name)));
-        Ok(Outputs::new(values).with_written(written.collect::<Vec<_>>()))
+        Ok(outputs.with_written(written.collect::<Vec<_>>()))
     }
 }
 

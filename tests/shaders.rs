@@ -1,8 +1,13 @@
 //! Every shader that can be dispatched is valid, with all choices that Rust makes of it.
 //!
-//! That structs agree with their mirrors in Rust is tested beside each node.
+//! That structs agree with their mirrors in Rust is tested beside each node, and so are constants that only one
+//! node has. Those that a module of Rust owns, or mathematics, are held against it here.
 
-use tyndall::gpu::{Shader, shader_names, shader_text};
+use std::f64::consts::PI;
+
+use tyndall::gpu::{Shader, shader_names, shader_text, wgsl_constant};
+use tyndall::light::environment::STACK_X;
+use tyndall::optics::peak;
 
 /// A part of a shader that is there or not.
 const SWITCH: &[&str] = &["true", "false"];
@@ -25,6 +30,9 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("widening", SWITCH),
     ("narrow", SWITCH),
     ("emission", SWITCH),
+    ("beams", SWITCH),
+    ("lobes", SWITCH),
+    ("skips", SWITCH),
     ("directions", &["4", "16", "64"]),
     ("least_anisotropy", &["0.1"]),
     ("least_share", &["1e-5"]),
@@ -89,6 +97,34 @@ fn every_entry_point_is_valid_in_all_its_forms() {
         }
     }
     assert!(n_stages > 10, "{n_stages} stages: are the shaders found?");
+}
+
+/// What a shader, with any of its choices, declares as a constant.
+fn constant(shader: &str, name: &str) -> Vec<f64> {
+    let shader = Shader::expand(shader, &ways(&with_imports(shader))[0]).unwrap();
+    wgsl_constant(&shader, name).unwrap()
+}
+
+#[test]
+fn constants_are_those_of_rust() {
+    let table = [peak::COLUMNS as f64, peak::ROWS as f64];
+    assert_eq!(constant("raymarch.wgsl", "PEAK_SIZE"), table);
+    assert_eq!(constant("raymarch.wgsl", "PEAK_X_MAX"), [peak::X_MAX]);
+    assert_eq!(constant("raymarch.wgsl", "STACK_LEVELS"), [STACK_X.len() as f64]);
+    assert_eq!(constant("lib/half.wgsl", "LARGEST_HALF"), [half::f16::MAX.to_f64()]);
+    assert_eq!(constant("tone_map.wgsl", "F32_MAX"), [f64::from(f32::MAX)]);
+    let f32s = |x: f64| [f64::from(x as f32)];
+    assert_eq!(constant("lib/phase.wgsl", "PI"), f32s(PI));
+    assert_eq!(constant("lib/phase.wgsl", "FOUR_PI"), f32s(4.0 * PI));
+    let n_directions = constant("isotropic_residual/uncollided.wgsl", "N_DIRECTIONS")[0];
+    assert_eq!(constant("isotropic_residual/uncollided.wgsl", "WEIGHT"), f32s(4.0 * PI / n_directions));
+}
+
+#[test]
+fn a_constant_that_is_not_there_is_an_error() {
+    let shader = Shader::expand("lib/phase.wgsl", &[]).unwrap();
+    let error = wgsl_constant(&shader, "TAU").unwrap_err().to_string();
+    assert!(error.contains("no number or vector TAU"), "{error}");
 }
 
 #[test]

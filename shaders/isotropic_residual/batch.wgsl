@@ -24,6 +24,9 @@ struct Batch {
 
 @group(0) @binding(0) var<uniform> batch: Batch;
 
+// Whether lobes have a direction; where g is 0 they have none.
+const HAS_LOBES: bool = {lobes};
+
 // Whether a thread (x, y, layer) has a cell in this batch's channels.
 fn has_cell(id: vec3u) -> bool {
     let c = id.z / batch.level.dims.z;

@@ -35,6 +35,8 @@ const FAR: f32 = 1e30;
 const OPAQUE: f32 = 1e-4;
 // Whether beams count whose light the camera adds point by point.
 const HAS_NARROW: bool = {narrow};
+// Threads along x of one dispatch.
+const ROW: u32 = 4194240u;
 
 // Irradiance of one beam on a side, per channel.
 fn from_beam(beam: Beam, p: vec3f, normal: vec3f) -> vec3f {
@@ -97,7 +99,7 @@ fn arriving(p: vec3f, direction: vec3f) -> vec3f {
 @compute @workgroup_size(64, 1, 1)
 fn isotropic_residual_surface_light(@builtin(global_invocation_id) id: vec3u) {
     // Beyond 65,535 groups along x, threads stand along y.
-    let idx = id.x + 4194240u * id.y;
+    let idx = id.x + ROW * id.y;
     if idx >= 2u * params.n_points {
         return;
     }

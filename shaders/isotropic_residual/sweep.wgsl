@@ -63,8 +63,11 @@ fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
     for (var step = 0; step < n_steps; step += 1) {
         let texel = lobes[lobe_base + cell];
         let t = bitcast<f32>(texel.w);
-        let shape = 1.0 + dot(unpack_slope(texel), direction.omega);
-        let q = bitcast<f32>(texel.x) * shape * shape;
+        var q = bitcast<f32>(texel.x);
+        if HAS_LOBES {
+            let shape = 1.0 + dot(unpack_slope(texel), direction.omega);
+            q *= shape * shape;
+        }
         let diamond = (q + a * radiance) / (t + a);
         let ahead = 2.0 * diamond - radiance;
         // Where the diamond runs dry the cell is so thick that nothing leaves it (t > 0 then).

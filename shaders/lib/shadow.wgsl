@@ -1,7 +1,9 @@
 // Corners of cells that a surface hides from a light: they hold a depth that no walk gives.
 
-// The largest half float, where depths that are stored end too: either way no light is left.
-const HIDDEN: f32 = 65504.0;
+#import "lib/half.wgsl"
+
+// Where depths that are stored end too: either way no light is left.
+const HIDDEN: f32 = LARGEST_HALF;
 
 fn is_hidden(tau: f32) -> bool {
     // Half floats of this size are 32 apart.

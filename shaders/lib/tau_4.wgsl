@@ -1,7 +1,8 @@
 // How an atlas of four beams a texel (16-bit floats) stores an optical depth.
 
-// The largest half float is 65504, and beyond it stands infinity. exp(-k tau) is 0 in f32 long before, for
-// every |g| <= 0.999.
+#import "lib/half.wgsl"
+
+// Beyond the largest half float stands infinity. exp(-k tau) is 0 in f32 long before, for every |g| <= 0.999.
 fn stored_tau(tau: f32) -> f32 {
-    return min(tau, 65504.0);
+    return min(tau, LARGEST_HALF);
 }

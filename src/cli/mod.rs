@@ -15,6 +15,7 @@ use tyndall::graph::did_you_mean;
 
 mod compare;
 mod doctor;
+mod explain;
 mod frames;
 mod inspect;
 mod nodes;
@@ -35,6 +36,7 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     Render(render::Args),
+    Explain(explain::Args),
     Inspect(inspect::Args),
     Compare(compare::Args),
     Nodes(nodes::Args),
@@ -50,6 +52,7 @@ const REFUSED: u8 = 2;
 pub fn main() -> ExitCode {
     let result = match Cli::parse().command {
         Command::Render(args) => render::run(&args),
+        Command::Explain(args) => explain::run(&args),
         Command::Inspect(args) => inspect::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Nodes(args) => nodes::run(&args),

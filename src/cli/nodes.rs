@@ -61,7 +61,8 @@ fn list(all: &[&NodeSpec]) -> String {
             let _ = writeln!(text, "  {NAME}{:<width$}{NAME:#}  {}", spec.id, spec.purpose);
         }
     }
-    text + "`tyndall nodes NAME` shows ports and parameters.\n"
+    text + "`tyndall nodes NAME` shows ports and parameters. Numbers, vectors, colors and directions may change with\n\
+            the frame: {\"keys\": [[1, 0.5], [48, 2]]} goes from 0.5 in frame 1 to 2 in frame 48.\n"
 }
 
 fn describe(spec: &NodeSpec) -> String {
@@ -85,13 +86,14 @@ fn describe(spec: &NodeSpec) -> String {
 }
 
 fn port_row(port: &PortSpec) -> Vec<String> {
-    let how = match (port.many, port.optional) {
+    let how = match (port.many, port.absent.is_some()) {
         (false, false) => "",
         (true, false) => " (many)",
         (false, true) => " (optional)",
         (true, true) => " (many, optional)",
     };
-    vec![port.name.to_owned(), format!("{}{how}", port.kind), port.doc.to_owned()]
+    let absent = port.absent.map_or(String::new(), |meaning| format!("; without it {meaning}"));
+    vec![port.name.to_owned(), format!("{}{how}", port.kind), format!("{}{absent}", port.doc)]
 }
 
 fn describe_param(param: &ParamSpec, indent: &str, text: &mut String) {
@@ -132,6 +134,12 @@ struct PortJson {
     kind: String,
     many: bool,
     optional: bool,
+    /// What it means that it stays empty.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    absent: Option<&'static str>,
+    /// The parameter that says how many frames apart its values are, between which it fades.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    faded_by: Option<&'static str>,
     doc: &'static str,
 }
 
@@ -144,6 +152,8 @@ struct ParamJson {
     unit: &'static str,
     required: bool,
     default: Option<Json>,
+    /// May change with the frame.
+    keys: bool,
     min: Option<f64>,
     max: Option<f64>,
     /// The end itself is not allowed.
@@ -177,8 +187,8 @@ impl NodeJson {
 
 impl PortJson {
     fn of(port: &'static PortSpec) -> Self {
-        let PortSpec { name, kind, many, optional, doc } = *port;
-        Self { name, kind: kind.to_string(), many, optional, doc }
+        let PortSpec { name, kind, many, absent, faded_by, doc } = *port;
+        Self { name, kind: kind.to_string(), many, optional: absent.is_some(), absent, faded_by, doc }
     }
 }
 
@@ -206,6 +216,7 @@ impl ParamJson {
             unit: param.unit,
             required: default.is_none(),
             default,
+            keys: param.kind.takes_keys(),
             min,
             max,
             open_min,

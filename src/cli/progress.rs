@@ -26,8 +26,9 @@ impl Progress {
         Self { bar, frame: String::new() }
     }
 
-    /// What follows belongs to this frame.
-    pub fn begin_frame(&mut self, frame: i64) {
+    /// What follows belongs to this frame; so many runs of nodes are still to come.
+    pub fn begin_frame(&mut self, frame: i64, n_left: usize) {
+        self.bar.set_length(self.bar.position() + n_left as u64);
         self.frame = format!("frame {frame}: ");
     }
 

@@ -40,7 +40,8 @@ pub struct Args {
     /// The save_image to run, or another node whose image -o is to show.
     #[arg(long, value_name = "NAME")]
     pub node: Option<String>,
-    /// Frames to render: 7, 1-100 or 1-100x2 (every second); sets `frame` of every load_vdb.
+    /// Frames to render: 7, 1-100 or 1-100x2 (every second); sets `frame` of every load_vdb
+    /// and the moment of parameters with keys.
     #[arg(long, value_name = "FIRST-LAST[xSTEP]")]
     pub frames: Option<Frames>,
     /// Render the frames whose files are there again; without it they are kept, whatever they were made
@@ -53,12 +54,20 @@ pub struct Args {
     /// Write what it cost, as JSON: times, memory, each node.
     #[arg(long, value_name = "FILE")]
     pub stats: Option<PathBuf>,
+    /// Model everything, also what the scene does not require (`tyndall explain` says what that is): to see
+    /// what that costs and changes.
+    #[arg(long)]
+    pub full: bool,
     /// auto, cpu, or a part of an adapter's name (`tyndall doctor` lists them).
     #[arg(long, value_name = "ADAPTER", default_value = "auto", value_parser = AdapterChoice::from_str)]
     pub adapter: AdapterChoice,
 }
 
-fn parse_size(text: &str) -> Result<[u32; 2], String> {
+/// `640x480`.
+///
+/// # Errors
+/// What to write instead.
+pub fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let side = |digits: &str| digits.parse::<u32>().ok().filter(|pixels| *pixels > 0);
     let sides = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
     sides.ok_or_else(|| "write the width, x, the height, both at least 1: 640x480".to_owned())
@@ -144,7 +153,8 @@ impl Job<'_> {
         let overwrite = self.args.overwrite;
         let is_kept = |outputs: &[Output]| !overwrite && outputs.iter().all(|output| output.path.is_file());
         let missing = frames.0.iter().filter(|frame| !is_kept(&scene.outputs_of(**frame)));
-        let mut progress = Progress::new(missing.count() * n_runs(&scene.document, &scene.outputs));
+        let mut n_missing = missing.count();
+        let mut progress = Progress::new(n_missing * n_runs(&scene.document, &scene.outputs));
         let (mut n_written, mut n_kept, mut n_failed) = (0, 0, 0);
         let mut interrupted = false;
         for frame in &frames.0 {
@@ -157,7 +167,10 @@ impl Job<'_> {
                 progress.print(&format!("frame {frame}: {} is there, kept", paths.join(", ")))?;
                 continue;
             }
-            progress.begin_frame(*frame);
+            // Of a fade, frames run different numbers of nodes.
+            let n_left = n_missing * n_runs(&scene.document_of(Some(*frame), &outputs)?, &outputs);
+            progress.begin_frame(*frame, n_left);
+            n_missing = n_missing.saturating_sub(1);
             let began = Instant::now();
             match self.shoot(scene, Some(*frame), &outputs, &mut progress)? {
                 Shot::Done(written) => {
@@ -204,6 +217,7 @@ impl Job<'_> {
             Some(session) => session,
             none => none.insert(Session::open(&self.args.adapter)?),
         };
+        session.set_pruning(!self.args.full);
         let show = &mut |event: &_| progress.show(event);
         let solved = session.solve(&document, Target::Nodes(&names), &self.cancel, show);
         if solved.evaluation.cancelled {

@@ -15,7 +15,6 @@ use super::output::Lines;
 use super::render::Args;
 
 const SAVE: &str = "save_image";
-const LOAD: &str = "load_vdb";
 const CAMERA: &str = "camera";
 
 /// What is to be rendered.
@@ -42,18 +41,10 @@ impl Scene {
     /// All that is wrong in the graph, as [`Lines`]; else the first thing that is wrong on the command
     /// line.
     pub fn load(args: &Args) -> anyhow::Result<Self> {
-        let mut document = Document::load(&args.graph).map_err(|error| unreadable(&args.graph, error))?;
-        set_params(&mut document, &args.set)?;
-        if let Some([width, height]) = args.size {
-            set_size(&mut document, width, height)?;
-        }
+        let mut document = read(&args.graph, &args.set, args.size)?;
         let nodes = choose(&mut document, args)?;
         let names: Vec<&str> = nodes.iter().map(String::as_str).collect();
-        let problems = check(&document, catalog(), Target::Nodes(&names));
-        if !problems.is_empty() {
-            let lines = problems.iter().map(|problem| format!("{}: {problem}", args.graph.display()));
-            return Err(Lines(lines.collect()).into());
-        }
+        refuse_problems(&document, Target::Nodes(&names), &args.graph)?;
         let outputs = nodes.into_iter().map(|node| {
             let path = match &args.output {
                 Some(path) => path.clone(),
@@ -63,8 +54,10 @@ impl Scene {
         });
         let outputs: Vec<Output> = outputs.collect();
         check_outputs(&outputs, args.frames.is_some())?;
-        if args.frames.is_some() && !document.nodes.values().any(|node| node.type_id == LOAD) {
-            anyhow::bail!("--frames: the graph has no load_vdb whose frame could change; leave it out");
+        if args.frames.is_some() && !document.varies(catalog()) {
+            anyhow::bail!(
+                "--frames: nothing in the graph changes with the frame, no load_vdb and no parameter with keys; leave it out"
+            );
         }
         Ok(Self { document, outputs })
     }
@@ -74,12 +67,7 @@ impl Scene {
     /// # Errors
     /// When a path is not UTF-8 or the working directory cannot be read.
     pub fn document_of(&self, frame: Option<i64>, outputs: &[Output]) -> anyhow::Result<Document> {
-        let mut document = self.document.clone();
-        if let Some(frame) = frame {
-            for node in document.nodes.values_mut().filter(|node| node.type_id == LOAD) {
-                node.params.insert("frame".to_owned(), frame.into());
-            }
-        }
+        let mut document = Document { frame, ..self.document.clone() };
         for output in outputs {
             // Relative paths in a document start at the graph.
             let path = std::path::absolute(&output.path)
@@ -98,6 +86,32 @@ impl Scene {
             |output: &Output| Output { node: output.node.clone(), path: frames::file(&output.path, frame) };
         self.outputs.iter().map(at_frame).collect()
     }
+}
+
+/// A graph with the parameters and the size of the command line.
+///
+/// # Errors
+/// All that is wrong in the file, as [`Lines`]; else the first thing that is wrong on the command line.
+pub fn read(path: &Path, settings: &[String], size: Option<[u32; 2]>) -> anyhow::Result<Document> {
+    let mut document = Document::load(path).map_err(|error| unreadable(path, error))?;
+    set_params(&mut document, settings)?;
+    if let Some([width, height]) = size {
+        set_size(&mut document, width, height)?;
+    }
+    Ok(document)
+}
+
+/// Fails where what the target needs could not run.
+///
+/// # Errors
+/// All problems of the graph, as [`Lines`].
+pub fn refuse_problems(document: &Document, target: Target, path: &Path) -> anyhow::Result<()> {
+    let problems = check(document, catalog(), target);
+    if problems.is_empty() {
+        return Ok(());
+    }
+    let lines = problems.iter().map(|problem| format!("{}: {problem}", path.display()));
+    Err(Lines(lines.collect()).into())
 }
 
 /// A graph file that is none; several problems of its form are a line each.

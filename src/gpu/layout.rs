@@ -58,17 +58,27 @@ pub fn wgsl_members(shader: &Shader, name: &str) -> Result<(Vec<(String, usize)>
     found.ok_or_else(|| GpuError::Shader(format!("no struct {name} in the shader")))
 }
 
-/// A whole number that an expanded shader declares as `const NAME`.
+/// The number, or the numbers of the vector, that an expanded shader declares as `const NAME`.
 ///
 /// # Errors
-/// [`GpuError::Shader`] where the shader is invalid or has no such number.
-pub fn wgsl_constant(shader: &Shader, name: &str) -> Result<i64, GpuError> {
+/// [`GpuError::Shader`] where the shader is invalid or has no such numbers.
+pub fn wgsl_constant(shader: &Shader, name: &str) -> Result<Vec<f64>, GpuError> {
     let module = shader.validate()?;
     let found = module.constants.iter().find(|(_, constant)| constant.name.as_deref() == Some(name));
-    let value = found.map(|(_, constant)| &module.global_expressions[constant.init]);
-    match value {
-        Some(naga::Expression::Literal(naga::Literal::I32(value))) => Ok(i64::from(*value)),
-        Some(naga::Expression::Literal(naga::Literal::U32(value))) => Ok(i64::from(*value)),
-        _ => Err(GpuError::Shader(format!("no whole number {name} in the shader"))),
+    let values = found.and_then(|(_, constant)| numbers(&module, constant.init));
+    values.ok_or_else(|| GpuError::Shader(format!("no number or vector {name} in the shader")))
+}
+
+fn numbers(module: &naga::Module, value: naga::Handle<naga::Expression>) -> Option<Vec<f64>> {
+    use naga::Literal::{F32, I32, U32};
+    match &module.global_expressions[value] {
+        naga::Expression::Literal(F32(value)) => Some(vec![f64::from(*value)]),
+        naga::Expression::Literal(I32(value)) => Some(vec![f64::from(*value)]),
+        naga::Expression::Literal(U32(value)) => Some(vec![f64::from(*value)]),
+        naga::Expression::Compose { components, .. } => {
+            let parts: Option<Vec<Vec<f64>>> = components.iter().map(|part| numbers(module, *part)).collect();
+            parts.map(|parts| parts.concat())
+        }
+        _ => None,
     }
 }

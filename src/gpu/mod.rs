@@ -12,6 +12,7 @@
 //! only a device that was lost stays lost. Nothing here is `unsafe`, and the GL backend is left out on purpose: its 3-D storage
 //! writes reach only z = 0, in silence.
 
+mod bandwidth;
 mod device;
 mod field;
 mod layout;

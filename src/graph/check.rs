@@ -8,7 +8,7 @@
 use std::fmt;
 
 use super::document::{Document, Wire};
-use super::params::Params;
+use super::params::{Moment, Params};
 use super::plan::{Target, needed, order};
 use super::spec::{Catalog, NodeSpec, PortSpec};
 use super::suggest::did_you_mean;
@@ -34,8 +34,9 @@ impl fmt::Display for Problem {
 /// graph can run.
 pub fn check(document: &Document, catalog: Catalog, target: Target) -> Vec<Problem> {
     let mut problems = missing_targets(document, target);
+    let moment = Moment { is_aside: false, frame: document.frame };
     for name in document.nodes.keys() {
-        if let Err(found) = resolve(document, catalog, name) {
+        if let Err(found) = resolve(document, catalog, name, moment) {
             problems.extend(found);
         }
     }
@@ -60,18 +61,19 @@ pub fn check(document: &Document, catalog: Catalog, target: Target) -> Vec<Probl
     problems
 }
 
-/// The kind and the parameters of one node of the document.
+/// The kind and the parameters of one node of the document at a moment.
 pub(super) fn resolve(
     document: &Document,
     catalog: Catalog,
     name: &str,
+    moment: Moment,
 ) -> Result<(&'static NodeSpec, Params), Vec<Problem>> {
     let node = &document.nodes[name];
     let Some(spec) = catalog.find(&node.type_id) else {
         let message = unknown_type(&node.type_id, catalog);
         return Err(vec![problem(name, "type", message)]);
     };
-    let params = Params::resolve(spec.params, &node.params, &document.base);
+    let params = Params::resolve(spec.params, &node.params, &document.base, moment);
     match params {
         Ok(params) => Ok((spec, params)),
         Err(found) => {
@@ -181,7 +183,7 @@ fn check_input(
         }
     }
     let message = match sources.len() {
-        0 if is_needed && !port.optional => {
+        0 if is_needed && port.absent.is_none() => {
             let givers = givers(catalog, port);
             format!("input '{}' is empty; wire {} into it, which {givers}", port.name, port.kind)
         }

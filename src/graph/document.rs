@@ -17,6 +17,8 @@ use std::str::FromStr;
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
 
+use super::params::Params;
+use super::spec::Catalog;
 use super::suggest::did_you_mean;
 
 pub(super) use strict::parse_json;
@@ -41,8 +43,10 @@ pub struct Document {
     pub wires: Vec<Wire>,
     /// Places on the canvas, in points.
     pub layout: IndexMap<String, [f64; 2]>,
-    /// The folder at which relative paths start; empty for the working directory.
+    /// The folder at which relative paths start; empty for the working directory. Not part of the file.
     pub base: PathBuf,
+    /// The frame that is looked at; without one sequences and keys are at their first. Not part of the file.
+    pub frame: Option<i64>,
 }
 
 /// A node as its file says it.
@@ -145,10 +149,22 @@ impl Document {
         write::pretty(&object(root))
     }
 
+    /// Whether some node can be another in another frame.
+    pub fn varies(&self, catalog: Catalog) -> bool {
+        self.nodes.values().any(|node| node.varies(catalog))
+    }
+
     /// The names of all nodes, for messages.
     pub(super) fn node_names(&self) -> String {
         let names: Vec<&str> = self.nodes.keys().map(String::as_str).collect();
         names.join(", ")
+    }
+}
+
+impl Node {
+    /// Whether its own parameters can be others in another frame.
+    pub(super) fn varies(&self, catalog: Catalog) -> bool {
+        catalog.find(&self.type_id).is_some_and(|spec| Params::vary(spec.params, &self.params))
     }
 }
 

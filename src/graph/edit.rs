@@ -12,7 +12,7 @@ use serde_json::{Map, Value as Json};
 
 use super::check::{unknown_node, unknown_type};
 use super::document::{Document, parse_json};
-use super::params::{describe, parse, unknown_param};
+use super::params::{Moment, Reading, describe, parse, unknown_param};
 use super::spec::{Catalog, ParamKind, ParamSpec};
 
 /// Why a parameter cannot be set.
@@ -91,7 +91,8 @@ fn read_value(field: &str, spec: &ParamSpec, text: &str, base: &Path) -> Result<
             return Err(format!("{found} is not valid JSON; write {}", spec.form()));
         }
     };
-    if let Err(problems) = parse(field, spec, &json, base) {
+    let reading = Reading { base, moment: Moment::default() };
+    if let Err(problems) = parse(field, spec, &json, &reading) {
         let messages: Vec<String> = problems.into_iter().map(|problem| problem.message).collect();
         let quoted = match &json {
             Json::String(_) => String::new(),

@@ -6,13 +6,15 @@
 //! without outputs is there for its effect: it always runs and is never cached.
 //! Values live until the evaluation is dropped. Tested with toy nodes that count their runs.
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use indexmap::IndexMap;
 
 use super::cache::Cache;
-use super::key::Key;
+use super::key::{InputKey, Key};
 use super::plan::{Job, Plan, Source, Work};
+use super::report::Report;
 use super::spec::NodeSpec;
 use super::value::Value;
 
@@ -52,6 +54,8 @@ pub enum Event {
         cpu_ms: f64,
         /// Size of its outputs, in bytes.
         bytes: u64,
+        /// What it says of its run, also where that was long ago.
+        report: Arc<Report>,
     },
     /// A node cannot run, or its run failed.
     Failed {
@@ -185,28 +189,40 @@ fn run_job(
             outputs
         }
     };
-    on_event(Event::Finished { name: name.clone(), cached, cpu_ms, bytes: outputs.bytes() });
+    let report = Arc::clone(outputs.report());
+    on_event(Event::Finished { name: name.clone(), cached, cpu_ms, bytes: outputs.bytes(), report });
     Ok(Outcome::Done { spec, key, outputs })
 }
 
-type InputKeys = Vec<Vec<(Key, usize)>>;
+type InputKeys = Vec<Vec<InputKey>>;
 
 /// The values and keys that a node reads, or the failed node because of which it cannot.
 fn gather(work: &Work, evaluation: &Evaluation) -> Result<(Inputs, InputKeys), String> {
     let mut inputs = Inputs::new(work.spec);
     let mut keys = Vec::with_capacity(work.sources.len());
     for (port, sources) in work.spec.inputs.iter().zip(&work.sources) {
-        let mut port_keys = Vec::with_capacity(sources.len());
-        for Source { job_idx, output_idx } in sources {
+        let mut port_keys: Vec<InputKey> = Vec::with_capacity(sources.len());
+        let mut values: Vec<&Value> = Vec::with_capacity(sources.len());
+        for Source { job_idx, output_idx, share } in sources {
             let (name, outcome) = evaluation.nodes.get_index(*job_idx).expect("run before");
             match outcome {
                 Outcome::Done { key, outputs, .. } => {
-                    inputs.push(port.name, outputs.values()[*output_idx].clone());
-                    port_keys.push((*key, *output_idx));
+                    let same = |found: &&mut InputKey| (found.key, found.output_idx) == (*key, *output_idx);
+                    match port_keys.iter_mut().find(same).filter(|_| port.faded_by.is_some()) {
+                        // From one value to the same there is no fade, so that it is one result, not one a frame.
+                        Some(found) => found.share = 1.0,
+                        None => {
+                            port_keys.push(InputKey { key: *key, output_idx: *output_idx, share: *share });
+                            values.push(&outputs.values()[*output_idx]);
+                        }
+                    }
                 }
                 Outcome::Failed(_) => return Err(name.clone()),
                 Outcome::Skipped(because) => return Err(because.clone()),
             }
+        }
+        for (value, key) in values.into_iter().zip(&port_keys) {
+            inputs.push_share(port.name, value.clone(), key.share);
         }
         keys.push(port_keys);
     }

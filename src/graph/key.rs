@@ -1,15 +1,16 @@
 //! The name of a result: a hash of all that it depends on, and nothing else.
 //!
 //! BLAKE3 (O'Connor et al. 2020), 256 bits, of the kind, its version, the node's own parameters, for each
-//! input the keys and outputs wired to it in order, and the identity that the host adds (size and time
-//! of files, shader text, frame). Not the node's name, its place or the rest of the graph: a renamed
-//! node and a copy of it find the same result. Every field is preceded by its length, so that no two
+//! input the keys, outputs and shares of what is wired to it in order, and the identity that the host adds
+//! (size and time of files, shader text). Not the node's name, its place or the rest of the graph: a renamed
+//! node and a copy of it find the same result. Not the frame either: what it chooses is a file, which the
+//! identity names, or a value, which has a key of its own. Every field is preceded by its length, so that no two
 //! lists of fields give the same bytes. Tested by changing one field at a time.
 
 use std::fmt;
 
 use super::params::{ParamValue, Params};
-use super::spec::NodeSpec;
+use super::spec::{NodeSpec, Timing};
 
 /// Hash of all that a node's outputs depend on.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]
@@ -22,24 +23,39 @@ impl fmt::Debug for Key {
     }
 }
 
+/// A value that a node reads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InputKey {
+    /// The giver's.
+    pub key: Key,
+    /// Place among the giver's outputs.
+    pub output_idx: usize,
+    /// Of an input that fades, what this value counts for; else 1.
+    pub share: f64,
+}
+
 impl Key {
-    /// The key of a node. `inputs` has for each input of the spec the key of the giver and the place of
-    /// its output, in the order of the wires.
+    /// The key of a node. `inputs` has for each input of the spec what is wired to it, in order.
     ///
     /// # Panics
     /// When `inputs` has not one list for each input.
-    pub fn new(spec: &NodeSpec, params: &Params, inputs: &[Vec<(Key, usize)>], identity: &[u8]) -> Self {
+    pub fn new(spec: &NodeSpec, params: &Params, inputs: &[Vec<InputKey>], identity: &[u8]) -> Self {
         assert_eq!(inputs.len(), spec.inputs.len(), "one list an input");
         let mut fields = Fields(blake3::Hasher::new());
         fields.bytes(spec.id.as_bytes());
         fields.count(spec.version as usize);
-        fields.params(params);
+        fields.params(
+            params
+                .iter()
+                .filter(|(name, _)| spec.param(name).is_none_or(|param| param.timing == Timing::Own)),
+        );
         for (port, sources) in spec.inputs.iter().zip(inputs) {
             fields.bytes(port.name.as_bytes());
             fields.count(sources.len());
-            for (key, output_idx) in sources {
+            for InputKey { key, output_idx, share } in sources {
                 fields.bytes(&key.0);
                 fields.count(*output_idx);
+                fields.bytes(&share.to_bits().to_le_bytes());
             }
         }
         fields.bytes(identity);
@@ -59,9 +75,10 @@ impl Fields {
         self.0.update(bytes);
     }
 
-    fn params(&mut self, params: &Params) {
-        self.count(params.iter().count());
-        for (name, value) in params.iter() {
+    fn params<'a>(&mut self, params: impl Iterator<Item = (&'static str, &'a ParamValue)>) {
+        let params: Vec<_> = params.collect();
+        self.count(params.len());
+        for (name, value) in params {
             self.bytes(name.as_bytes());
             self.value(value);
         }
@@ -82,7 +99,7 @@ impl Fields {
             }
             ParamValue::Record(params) => {
                 self.count(7);
-                self.params(params);
+                self.params(params.iter());
             }
         }
     }
@@ -100,6 +117,7 @@ mod tests {
     use serde_json::{Value as Json, json};
 
     use super::*;
+    use crate::graph::params::Moment;
     use crate::graph::spec::{Category, ParamSpec, PortSpec, PortType};
 
     const PARAMS: &[ParamSpec] = &[
@@ -109,10 +127,11 @@ mod tests {
         ParamSpec::text("b", ""),
         ParamSpec::path("path").or_null(),
         ParamSpec::record("emission", &[ParamSpec::bool("on", true)]),
+        ParamSpec::int("frame", 0).or_null().timed(Timing::Frame),
     ];
     const INPUTS: &[PortSpec] = &[
-        PortSpec::new("x", PortType::Light, "").many().optional(),
-        PortSpec::new("y", PortType::Light, "").many().optional(),
+        PortSpec::new("x", PortType::Light, "").many().optional(""),
+        PortSpec::new("y", PortType::Light, "").many().optional(""),
     ];
     static SPEC: NodeSpec = spec("kind", 1);
     static NEXT_VERSION: NodeSpec = spec("kind", 2);
@@ -132,7 +151,7 @@ mod tests {
     }
 
     fn key_of(json: Json) -> Key {
-        let params = Params::resolve(PARAMS, json.as_object().unwrap(), Path::new("here"));
+        let params = Params::resolve(PARAMS, json.as_object().unwrap(), Path::new("here"), Moment::default());
         Key::new(&SPEC, &params.unwrap(), &[vec![], vec![]], b"")
     }
 
@@ -140,9 +159,13 @@ mod tests {
     #[test]
     fn one_change_is_another_key() {
         let params = Params::defaults(PARAMS).unwrap();
+        let input =
+            |(key, output_idx): &(Key, usize)| InputKey { key: *key, output_idx: *output_idx, share: 1.0 };
+        let inputs = |list: &[(Key, usize)]| list.iter().map(input).collect::<Vec<_>>();
         let wired =
-            |x: &[(Key, usize)], y: &[(Key, usize)]| Key::new(&SPEC, &params, &[x.to_vec(), y.to_vec()], b"");
+            |x: &[(Key, usize)], y: &[(Key, usize)]| Key::new(&SPEC, &params, &[inputs(x), inputs(y)], b"");
         let (one, two) = (Key([1; 32]), Key([2; 32]));
+        let faded = vec![InputKey { key: one, output_idx: 0, share: 0.5 }];
         let none = [vec![], vec![]];
         let keys = [
             key_of(json!({})),
@@ -165,6 +188,7 @@ mod tests {
             wired(&[(one, 0), (two, 0)], &[]),
             wired(&[(two, 0), (one, 0)], &[]),
             wired(&[(one, 0)], &[(two, 0)]),
+            Key::new(&SPEC, &params, &[faded, vec![]], b""),
         ];
         for (i, a) in keys.iter().enumerate() {
             for (j, b) in keys.iter().enumerate() {
@@ -179,5 +203,7 @@ mod tests {
         let a = key_of(json!({"a": "x", "b": "y"}));
         assert_eq!(a, key_of(json!({"b": "y", "a": "x"})));
         assert_eq!(key_of(json!({"emission": {}})), key_of(json!({"emission": {"on": true}})));
+        // A frame chooses a file, which the identity names.
+        assert_eq!(key_of(json!({})), key_of(json!({"frame": 7})));
     }
 }

@@ -11,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 use super::file::FileState;
 use super::params::Params;
+use super::report::Report;
 use super::spec::NodeSpec;
 use super::value::Value;
 
@@ -33,13 +34,15 @@ pub struct Inputs {
     spec: &'static NodeSpec,
     /// For each input of the spec, in the order of the wires.
     ports: Vec<Vec<Value>>,
+    /// What each value counts for.
+    shares: Vec<Vec<f64>>,
 }
 
 impl Inputs {
     /// All inputs empty.
     pub fn new(spec: &'static NodeSpec) -> Self {
-        let ports = vec![Vec::new(); spec.inputs.len()];
-        Self { spec, ports }
+        let n_inputs = spec.inputs.len();
+        Self { spec, ports: vec![Vec::new(); n_inputs], shares: vec![Vec::new(); n_inputs] }
     }
 
     /// Adds a value after those that the input has.
@@ -47,11 +50,21 @@ impl Inputs {
     /// # Panics
     /// When the input is not declared or takes another kind or no second value.
     pub fn push(&mut self, port: &str, value: Value) {
+        self.push_share(port, value, 1.0);
+    }
+
+    /// Adds a value that counts for a share of one, to an input that fades; elsewhere it is 1.
+    ///
+    /// # Panics
+    /// As `push` does.
+    pub fn push_share(&mut self, port: &str, value: Value, share: f64) {
         let idx = self.place(port);
         let spec = &self.spec.inputs[idx];
         assert_eq!(value.kind, spec.kind, "{}.{port}", self.spec.id);
-        assert!(spec.many || self.ports[idx].is_empty(), "{}.{port} takes one value", self.spec.id);
+        let takes_many = spec.many || spec.faded_by.is_some();
+        assert!(takes_many || self.ports[idx].is_empty(), "{}.{port} takes one value", self.spec.id);
         self.ports[idx].push(value);
+        self.shares[idx].push(share);
     }
 
     /// The value of an input that must be wired.
@@ -70,9 +83,19 @@ impl Inputs {
         self.values(port).iter().map(Value::get).collect()
     }
 
+    /// The values of an input that fades, none or those of one or two frames, with shares that add up to 1.
+    pub fn faded<T: 'static>(&self, port: &str) -> Vec<(&T, f64)> {
+        self.many(port).into_iter().zip(self.shares[self.place(port)].iter().copied()).collect()
+    }
+
     /// The values themselves, for a node that passes one on.
     pub fn values(&self, port: &str) -> &[Value] {
         &self.ports[self.place(port)]
+    }
+
+    /// The values of all inputs.
+    pub fn all(&self) -> impl Iterator<Item = &Value> {
+        self.ports.iter().flatten()
     }
 
     fn place(&self, port: &str) -> usize {
@@ -86,17 +109,28 @@ impl Inputs {
 pub struct Outputs {
     values: Arc<[Value]>,
     written: Arc<[FileState]>,
+    report: Arc<Report>,
 }
 
 impl Outputs {
     /// One value for each output.
     pub fn new(values: impl Into<Arc<[Value]>>) -> Self {
-        Self { values: values.into(), written: Arc::default() }
+        Self { values: values.into(), written: Arc::default(), report: Arc::default() }
     }
 
     /// And the files that the node wrote, as it left them.
     pub fn with_written(self, files: impl Into<Arc<[FileState]>>) -> Self {
         Self { written: files.into(), ..self }
+    }
+
+    /// And what the node says of its run.
+    pub fn with_report(self, report: Report) -> Self {
+        Self { report: Arc::new(report), ..self }
+    }
+
+    /// What the node said when it ran.
+    pub fn report(&self) -> &Arc<Report> {
+        &self.report
     }
 
     /// One value for each output.
@@ -179,7 +213,7 @@ mod tests {
         purpose: "",
         doc: "",
         inputs: &[
-            PortSpec::new("a", PortType::Light, "").optional(),
+            PortSpec::new("a", PortType::Light, "").optional(""),
             PortSpec::new("b", PortType::Light, "").many(),
         ],
         outputs: &[],

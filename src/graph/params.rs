@@ -3,15 +3,27 @@
 //!
 //! A node asks by name and gets a plain value; asking for a name or form that its spec does not declare
 //! is our own mistake and panics. Nothing is clamped: what is outside is a problem that names the
-//! allowed range. Relative paths are joined to the folder of the graph here, once. Tested for every
-//! form: what is taken, and the exact text of what is refused.
+//! allowed range. Relative paths are joined to the folder of the graph here, once. What changes with the
+//! frame has its value of the [`Moment`] afterwards: a node sees plain values. Tested for every form: what
+//! is taken, and the exact text of what is refused.
 
 use std::path::{Path, PathBuf};
 
 use serde_json::{Map, Value as Json};
 
-use super::spec::{Default, ParamKind, ParamSpec, list};
+use super::spec::{Default, ParamKind, ParamSpec, Timing, list};
 use super::suggest::did_you_mean;
+
+mod keys;
+
+/// When a node is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, std::default::Default)]
+pub struct Moment {
+    /// For the sake of another frame, which fades from this one or to it. There need not be one here.
+    pub is_aside: bool,
+    /// Frame of the scene; without one, parameters with keys have the value of their first.
+    pub frame: Option<i64>,
+}
 
 /// Validated parameters, in the order of the spec.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,7 +62,8 @@ pub struct ParamProblem {
 }
 
 impl Params {
-    /// Reads `given` (the node's object without its `type`). Relative paths start at `base`.
+    /// Reads `given` (the node's object without its `type`) as it is at a moment. Relative paths start at
+    /// `base`.
     ///
     /// # Errors
     /// All problems at once, in the order of `given`, then what is missing.
@@ -58,8 +71,9 @@ impl Params {
         specs: &'static [ParamSpec],
         given: &Map<String, Json>,
         base: &Path,
+        moment: Moment,
     ) -> Result<Self, Vec<ParamProblem>> {
-        resolve_in("", specs, given, base)
+        resolve_in("", specs, given, &Reading { base, moment })
     }
 
     /// The parameters of a node that says nothing but its type.
@@ -67,7 +81,17 @@ impl Params {
     /// # Errors
     /// Names the parameters that have no default.
     pub fn defaults(specs: &'static [ParamSpec]) -> Result<Self, Vec<ParamProblem>> {
-        Self::resolve(specs, &Map::new(), Path::new(""))
+        Self::resolve(specs, &Map::new(), Path::new(""), Moment::default())
+    }
+
+    /// Whether what is given can have another value in another frame.
+    pub fn vary(specs: &[ParamSpec], given: &Map<String, Json>) -> bool {
+        specs.iter().any(|spec| match (spec.timing, spec.kind, given.get(spec.name)) {
+            (Timing::Frame, ..) => true,
+            (_, ParamKind::Record(members), Some(Json::Object(given))) => Self::vary(members, given),
+            (_, _, Some(json)) => keys::of(spec, json).is_some(),
+            _ => false,
+        })
     }
 
     /// All values in the order of the spec.
@@ -163,11 +187,30 @@ fn mistake(name: &str, asked: &str, found: &ParamValue) -> ! {
     panic!("parameter '{name}' was asked for as {asked} but is {found:?}")
 }
 
+/// Where and when parameters are read.
+pub(super) struct Reading<'a> {
+    /// Relative paths start here.
+    pub base: &'a Path,
+    /// What changes with the frame has its value of this one.
+    pub moment: Moment,
+}
+
+impl Reading<'_> {
+    /// What the moment says about a parameter, whatever is given.
+    fn timed(&self, spec: &ParamSpec) -> Option<ParamValue> {
+        match spec.timing {
+            Timing::Frame => self.moment.frame.map(ParamValue::Int),
+            Timing::Aside => self.moment.is_aside.then_some(ParamValue::Bool(true)),
+            Timing::Own => None,
+        }
+    }
+}
+
 fn resolve_in(
     prefix: &str,
     specs: &'static [ParamSpec],
     given: &Map<String, Json>,
-    base: &Path,
+    reading: &Reading,
 ) -> Result<Params, Vec<ParamProblem>> {
     let mut problems = Vec::new();
     for name in given.keys() {
@@ -183,14 +226,14 @@ fn resolve_in(
         let field = format!("{prefix}{}", spec.name);
         let default = spec.default_json();
         let result = match given.get(spec.name).or(default.as_ref()) {
-            Some(json) => parse(&field, spec, json, base),
+            Some(json) => parse(&field, spec, json, reading),
             None => Err(vec![ParamProblem {
                 message: format!("{field} is missing; write {}", spec.form()),
                 field,
             }]),
         };
         match result {
-            Ok(value) => entries.push((spec.name, value)),
+            Ok(value) => entries.push((spec.name, reading.timed(spec).unwrap_or(value))),
             Err(found) => problems.extend(found),
         }
     }
@@ -217,8 +260,11 @@ pub(super) fn parse(
     field: &str,
     spec: &ParamSpec,
     json: &Json,
-    base: &Path,
+    reading: &Reading,
 ) -> Result<ParamValue, Vec<ParamProblem>> {
+    if let Some(given) = keys::of(spec, json) {
+        return keys::parse(field, spec, given, reading);
+    }
     let refuse = |message: String| Err(vec![ParamProblem { field: field.to_owned(), message }]);
     let wrong_form = || refuse(format!("{field} is {}; write {}", describe(json), spec.form()));
     match (spec.kind, json) {
@@ -247,7 +293,9 @@ pub(super) fn parse(
         (ParamKind::Path | ParamKind::OutPath, Json::String(text)) if text.is_empty() => {
             refuse(format!("{field} is empty; write {}", spec.form()))
         }
-        (ParamKind::Path | ParamKind::OutPath, Json::String(text)) => Ok(ParamValue::Path(base.join(text))),
+        (ParamKind::Path | ParamKind::OutPath, Json::String(text)) => {
+            Ok(ParamValue::Path(reading.base.join(text)))
+        }
         (ParamKind::Vector(count), Json::Array(items)) if all_numbers(items, count) => {
             Ok(ParamValue::Floats(in_limits(field, spec, json)?))
         }
@@ -260,16 +308,20 @@ pub(super) fn parse(
         }
         (ParamKind::Direction, Json::Array(items)) if all_numbers(items, 3) => {
             let values = in_limits(field, spec, json)?;
-            if values.iter().all(|x| *x == 0.0) {
+            if has_no_length(&values) {
                 return refuse(format!("{field} has no length; write {}", spec.form()));
             }
             Ok(ParamValue::Floats(values))
         }
         (ParamKind::Record(specs), Json::Object(given)) => {
-            resolve_in(&format!("{field}."), specs, given, base).map(ParamValue::Record)
+            resolve_in(&format!("{field}."), specs, given, reading).map(ParamValue::Record)
         }
         _ => wrong_form(),
     }
+}
+
+fn has_no_length(direction: &[f64]) -> bool {
+    direction.iter().all(|x| *x == 0.0)
 }
 
 fn all_numbers(items: &[Json], count: usize) -> bool {

@@ -3,15 +3,19 @@
 //! Order: Kahn's algorithm (Commun. ACM 5, 558, 1962), among several ready nodes the first in the
 //! document, so that the same file always runs the same way. A cycle is cut out whole and named; what
 //! stands after it is still ordered. A node with a problem stays in the plan with its message, so that
-//! the evaluation can go on around it. Tested by orders, targets and cycles.
+//! the evaluation can go on around it. A node that is needed at several moments is several jobs, those for
+//! the sake of another frame named `camera@8`. Tested by orders, targets, cycles and fades.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use super::check::{check, resolve};
 use super::document::Document;
-use super::params::Params;
+use super::params::{Moment, Params};
 use super::spec::{Catalog, NodeSpec};
+use moments::Moments;
+
+mod moments;
 
 /// What is asked for.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +38,7 @@ pub struct Plan {
 /// One node of a plan.
 #[derive(Debug)]
 pub struct Job {
-    /// Its name.
+    /// Its node's name; with a frame where it is looked at for the sake of another.
     pub name: String,
     /// What it needs to run, or why it cannot: problems, joined with "; also ".
     pub work: Result<Work, String>,
@@ -52,12 +56,14 @@ pub struct Work {
 }
 
 /// An output of a job.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Source {
     /// Place in `Plan::jobs`, always before the reader.
     pub job_idx: usize,
     /// Place among the outputs of its kind.
     pub output_idx: usize,
+    /// Of an input that fades, what this value counts for; else 1.
+    pub share: f64,
 }
 
 impl Plan {
@@ -66,26 +72,30 @@ impl Plan {
         let problems = check(document, catalog, target);
         let order = order(document);
         let needed = needed(document, target);
+        let moments = Moments::new(document, catalog, &order.nodes, &needed);
         let mut jobs: Vec<Job> = Vec::new();
-        for idx in order.nodes {
-            if !needed[idx] {
-                continue;
-            }
+        for &idx in &order.nodes {
             let (name, _) = document.nodes.get_index(idx).expect("an index of a node");
-            let mut messages: Vec<&str> = Vec::new();
             let own = problems.iter().filter(|problem| problem.node == *name);
-            messages.extend(own.map(|problem| problem.message.as_str()));
+            let mut messages: Vec<&str> = own.map(|problem| problem.message.as_str()).collect();
             if messages.is_empty() && order.cycles.iter().any(|cycle| cycle.contains(&idx)) {
                 messages.push("is in a cycle; remove a wire of it");
             }
-            let work = if messages.is_empty() {
-                let (spec, params) = resolve(document, catalog, name).expect("checked above");
-                let sources = sources(document, catalog, &jobs, name, spec);
-                Ok(Work { spec, params, sources })
-            } else {
-                Err(messages.join("; also "))
-            };
-            jobs.push(Job { name: name.clone(), work });
+            for moment in moments.of_node(idx) {
+                let work = if messages.is_empty() {
+                    resolve(document, catalog, name, moment).map(|(spec, params)| {
+                        let sources = sources(document, catalog, &jobs, &moments, (name, moment), spec);
+                        Work { spec, params, sources }
+                    })
+                } else {
+                    Err(Vec::new())
+                };
+                let work = work.map_err(|problems| {
+                    let own = problems.iter().map(|problem| problem.message.as_str());
+                    messages.iter().copied().chain(own).collect::<Vec<_>>().join("; also ")
+                });
+                jobs.push(Job { name: job_name(name, moment), work });
+            }
         }
         let unknown = problems.iter().filter(|problem| {
             matches!(target, Target::Nodes(names) if names.contains(&problem.node.as_str()))
@@ -105,28 +115,43 @@ impl Plan {
     }
 }
 
-/// What is wired to each input of a node whose wires have been checked.
+/// `camera`, or `camera@8` for the sake of another frame.
+fn job_name(node: &str, moment: Moment) -> String {
+    match moment {
+        Moment { is_aside: true, frame: Some(frame) } => format!("{node}@{frame}"),
+        _ => node.to_owned(),
+    }
+}
+
+/// What is wired to each input of a node whose wires have been checked, at a moment.
 fn sources(
     document: &Document,
     catalog: Catalog,
     jobs: &[Job],
-    name: &str,
+    moments: &Moments,
+    (name, moment): (&str, Moment),
     spec: &NodeSpec,
 ) -> Vec<Vec<Source>> {
-    let source = |from: &super::document::End| {
-        let job_idx = jobs.iter().position(|job| job.name == from.node);
+    let source = |from: &super::document::End, moment, share| {
+        let giver_name = job_name(&from.node, moment);
+        let job_idx = jobs.iter().position(|job| job.name == giver_name);
         let giver = catalog.find(&document.nodes[&from.node].type_id);
         let output = giver.and_then(|giver| giver.output(&from.port));
         Source {
             job_idx: job_idx.expect("the giver stands before"),
             // A node of an unknown kind fails, so nobody reads its outputs; the reader is skipped.
             output_idx: output.map_or(0, |(idx, _)| idx),
+            share,
         }
     };
     let of_port = |port: &super::spec::PortSpec| {
         let wires = document.wires.iter();
         let wires = wires.filter(|wire| wire.to.node == name && wire.to.port == port.name);
-        wires.map(|wire| source(&wire.from)).collect()
+        let read = wires.flat_map(|wire| {
+            let moments = moments.of_wire(wire, moment).into_iter();
+            moments.map(|(moment, share)| source(&wire.from, moment, share))
+        });
+        read.collect()
     };
     spec.inputs.iter().map(of_port).collect()
 }

@@ -79,9 +79,11 @@ pub struct PortSpec {
     pub kind: PortType,
     /// An input that takes many wires.
     pub many: bool,
-    /// An input that may stay empty.
-    pub optional: bool,
-    /// What it is; for an optional input also what its absence means.
+    /// Of an input that may stay empty, what that means.
+    pub absent: Option<&'static str>,
+    /// An input that fades: the parameter of its node that says how many frames apart its values are.
+    pub faded_by: Option<&'static str>,
+    /// What it is.
     pub doc: &'static str,
 }
 
@@ -135,7 +137,7 @@ impl NodeSpec {
 impl PortSpec {
     /// An input that takes exactly one wire, or an output.
     pub const fn new(name: &'static str, kind: PortType, doc: &'static str) -> Self {
-        Self { name, kind, many: false, optional: false, doc }
+        Self { name, kind, many: false, absent: None, faded_by: None, doc }
     }
 
     /// Takes many wires; at least one, unless it is optional too.
@@ -144,9 +146,17 @@ impl PortSpec {
         self
     }
 
-    /// May stay empty.
-    pub const fn optional(mut self) -> Self {
-        self.optional = true;
+    /// May stay empty, which means `absent`: "there are only suns".
+    pub const fn optional(mut self, absent: &'static str) -> Self {
+        self.absent = Some(absent);
+        self
+    }
+
+    /// Comes from the two frames around the one that is looked at whose numbers are multiples of this
+    /// parameter, a whole number of the node's own, each with its share. With 0 or 1, and where nothing
+    /// changes with the frame, it is one value as any other.
+    pub const fn faded_by(mut self, param: &'static str) -> Self {
+        self.faded_by = Some(param);
         self
     }
 }
@@ -214,7 +224,7 @@ mod tests {
             category: Category::Volume,
             purpose: "a shape",
             doc: "",
-            inputs: &[PortSpec::new("mask", PortType::Image, "").many().optional()],
+            inputs: &[PortSpec::new("mask", PortType::Image, "").many().optional("")],
             outputs: OUT,
             params: &[],
         };

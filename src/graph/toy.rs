@@ -3,10 +3,11 @@
 use std::cell::RefCell;
 
 use super::eval::{Host, Inputs, NodeError, NodeJob, Outputs};
+use super::report::{Decision, Report};
 use super::spec::{Catalog, Category, NodeSpec, ParamSpec, PortSpec, PortType};
 use super::value::Value;
 
-pub const CATALOG: Catalog = Catalog(&[&NUMBER, &SUM, &PAIR, &PAINT, &SAVE, &FILE, &SHAPE, &MEDIUM]);
+pub const CATALOG: Catalog = Catalog(&[&NUMBER, &SUM, &PAIR, &PAINT, &SAVE, &FILE, &SHAPE, &MEDIUM, &FADE]);
 
 const fn kind(
     id: &'static str,
@@ -27,9 +28,19 @@ pub static SUM: NodeSpec = kind("sum", &[PortSpec::new("lights", PortType::Light
 /// a − b and a + b, without b the negative and a.
 pub static PAIR: NodeSpec = kind(
     "pair",
-    &[PortSpec::new("a", PortType::Light, ""), PortSpec::new("b", PortType::Light, "").optional()],
+    &[
+        PortSpec::new("a", PortType::Light, ""),
+        PortSpec::new("b", PortType::Light, "").optional("nothing is taken off"),
+    ],
     &[PortSpec::new("difference", PortType::Light, ""), PortSpec::new("total", PortType::Light, "")],
     &[],
+);
+/// Fades from one value to the next.
+pub static FADE: NodeSpec = kind(
+    "fade",
+    &[PortSpec::new("light", PortType::Light, "").optional("there is none").faded_by("apart")],
+    &[LIGHT],
+    &[ParamSpec::int("apart", 4).between(0.0, 100.0)],
 );
 pub static PAINT: NodeSpec = kind("paint", &[LIGHT], &[IMAGE], &[]);
 pub static SAVE: NodeSpec = kind("save", &[IMAGE], &[], &[ParamSpec::out_path("path", "out.exr")]);
@@ -96,7 +107,10 @@ impl Host for ToyHost {
         Ok(match job.spec.id {
             "number" => match job.params.f64("x") {
                 7.0 => return Err(NodeError::new("7 is unlucky; write another number")),
-                x => Outputs::new([light(x)]),
+                x => Outputs::new([light(x)]).with_report(Report {
+                    decisions: vec![Decision::kept("toy", "the number", "it is lucky", format!("x = {x}"))],
+                    ..Report::default()
+                }),
             },
             // The first counts double, so that the order of the wires shows.
             "sum" => {
@@ -108,6 +122,10 @@ impl Host for ToyHost {
                 let b = inputs.maybe::<f64>("b").copied();
                 let difference = b.map_or(-a, |b| a - b);
                 Outputs::new([light(difference), light(a + b.unwrap_or(0.0))])
+            }
+            "fade" => {
+                let lights = inputs.faded::<f64>("light");
+                Outputs::new([light(lights.iter().map(|(x, share)| share * **x).sum())])
             }
             "paint" => {
                 let x: &f64 = inputs.one("light");

@@ -20,6 +20,9 @@ pub struct Value {
     type_name: &'static str,
 }
 
+/// The data of [`Value::unknown`].
+struct Unknown;
+
 #[derive(Clone)]
 enum Bytes {
     Fixed(u64),
@@ -38,6 +41,16 @@ impl Value {
         let seen = Arc::clone(&data);
         let bytes = Bytes::Measured(Arc::new(move || measure(&seen)));
         Self { kind, bytes, data, type_name: type_name::<T>() }
+    }
+
+    /// What stands for a value where a run was only foretold: it holds nothing, and nothing can be made of it.
+    pub fn unknown(kind: PortType) -> Self {
+        Self::new(kind, 0, Unknown)
+    }
+
+    /// Whether it is one that nothing can be made of.
+    pub fn is_unknown(&self) -> bool {
+        self.data.is::<Unknown>()
     }
 
     /// Memory it holds now on CPU and GPU together, in bytes.

@@ -30,7 +30,7 @@ pub enum Curve {
 }
 
 /// The largest exposed value that a curve is evaluated at: the largest half float.
-pub const CEILING: f32 = 65504.0;
+pub const CEILING: f32 = half::f16::MAX.to_f32_const();
 
 /// Hable's A, B, C, D, E and F: shoulder strength, linear strength, linear angle, toe strength,
 /// toe numerator, toe denominator.

@@ -9,6 +9,9 @@ pub mod importance;
 
 use glam::DVec3;
 
+/// The most irradiance, radiance or intensity that is computed: sums over all cells are still 32-bit numbers.
+pub const BRIGHTEST: f64 = 1e28;
+
 /// A source that is not an environment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Light {

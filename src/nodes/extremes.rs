@@ -15,6 +15,8 @@ use crate::nodes::oracle_scene::constant_light;
 use crate::volume::field::Field;
 use crate::wire::{Beam, Place, Residual};
 
+mod chain;
+
 /// A scene's residual and picture.
 struct Rendered {
     residual: Value,
@@ -75,7 +77,7 @@ fn assert_healthy(gpu: &Gpu, what: &str, rendered: &Rendered) {
     assert!(balance.iter().all(|factor| factor.is_finite() && *factor > 0.0), "{what}: {balance:?}");
     let values = rendered.values();
     assert!(values.iter().all(|value| value.is_finite() && *value >= 0.0), "{what}: {values:?}");
-    assert!(largest(&values) > 0.0, "{what}: black");
+    assert!(largest(&values) > 0.0, "{what}: nothing is there");
 }
 
 #[test]
@@ -122,7 +124,7 @@ fn twice_the_light_is_twice_as_bright() {
     let lights = |scale: f64| [sun(DVec3::new(0.4, -0.3, 0.8), 3.0 * scale), sun(DVec3::NEG_Y, scale)];
     let one = render(gpu, &scene(), &lights(1.0), 0.2, "default");
     // A power of two would only move exponents.
-    for scale in [2.7, 1e5, 1e-5] {
+    for scale in [2.7, 1e5, 1e-5, 3e27, 1e-25] {
         let other = render(gpu, &scene(), &lights(scale), 0.2 * scale, "default");
         let compare = |what: &str, found: Vec<f64>, expected: Vec<f64>| {
             let found: Vec<f64> = found.iter().map(|value| value / scale).collect();

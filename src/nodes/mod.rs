@@ -4,10 +4,11 @@
 //! Nodes know the graph's node types, the GPU layer and the domain modules, never another node: what
 //! they share travels on wires (`crate::wire`).
 
+use std::cell::RefCell;
 use std::path::PathBuf;
 
 use crate::gpu::{Gpu, GpuError, Recorder};
-use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Value};
+use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Report, Value};
 use crate::wire::{Beams, Medium};
 
 mod camera;
@@ -68,6 +69,19 @@ pub struct NodeKind {
     pub files: fn(&Params) -> Result<Vec<PathBuf>, NodeError>,
     /// Makes its outputs, in the order of the specification.
     pub run: fn(&Run) -> Result<Vec<Value>, NodeError>,
+    /// How the planner's rules bear on it.
+    pub rules: Rules,
+}
+
+/// How the planner's rules bear on a node, and how `explain` learns of them.
+pub enum Rules {
+    /// Not at all.
+    None,
+    /// It follows some, and costs little: it is run.
+    Cheap,
+    /// It follows some, and costs much. This reports what `run` would, and makes outputs of which only what
+    /// other nodes' decisions rest on is there, without any field.
+    Foretold(fn(&Run) -> Result<Vec<Value>, NodeError>),
 }
 
 /// What a node has while it runs.
@@ -80,9 +94,18 @@ pub struct Run<'a> {
     pub gpu: &'a Gpu,
     /// To be asked between stages.
     pub cancel: &'a crate::graph::CancelToken,
+    /// Whether what the scene does not require is left out.
+    pub prune: bool,
+    /// What it says of itself.
+    pub report: RefCell<Report>,
 }
 
 impl Run<'_> {
+    /// Says what it does and does not.
+    fn tell(&self, report: Report) {
+        self.report.replace(report);
+    }
+
     /// Runs what was recorded.
     ///
     /// # Errors
@@ -116,11 +139,17 @@ pub fn catalog() -> Catalog {
 /// # Errors
 /// Where they went through another one; what the device reports.
 fn beams_through(run: &Run, medium: &Medium) -> Result<Beams, NodeError> {
+    check_media(run, medium)?;
+    Ok(Beams::merge(run.gpu, &medium.lattice, &run.inputs.many::<Beams>("beams"))?)
+}
+
+/// Fails unless the beams of an input went through this medium.
+fn check_media(run: &Run, medium: &Medium) -> Result<(), NodeError> {
     let parts = run.inputs.many::<Beams>("beams");
-    if parts.iter().any(|part| part.lattice != medium.lattice) {
-        return Err(NodeError::new(ELSEWHERE));
+    match parts.iter().all(|part| part.lattice == medium.lattice) {
+        true => Ok(()),
+        false => Err(NodeError::new(ELSEWHERE)),
     }
-    Ok(Beams::merge(run.gpu, &medium.lattice, &parts)?)
 }
 
 const ELSEWHERE: &str =

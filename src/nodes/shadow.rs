@@ -9,13 +9,14 @@
 use super::Run;
 use crate::geometry::Mesh;
 use crate::gpu::Bind;
-use crate::graph::{NodeError, PortSpec, PortType};
+use crate::graph::{NodeError, PortSpec, PortType, StageWork};
 use crate::mirror;
 use crate::wire::{Beam, BeamTexel, Medium, Surfaces, TauAtlas};
 
 /// The input of nodes whose light surfaces are in the way of.
-pub(super) const SURFACES: PortSpec =
-    PortSpec::new("surfaces", PortType::Surface, "what casts shadows").many().optional();
+pub(super) const SURFACES: PortSpec = PortSpec::new("surfaces", PortType::Surface, "what casts shadows")
+    .many()
+    .optional("nothing is in the way of the light");
 
 mirror! {
     /// `ShadowParams` of `shaders/shadow.wgsl`.
@@ -26,6 +27,16 @@ mirror! {
         pad: u32,
         beams: [BeamTexel; 4],
     }
+}
+
+/// Whether the surfaces of the input hide anything.
+pub(super) fn is_cast(run: &Run) -> bool {
+    run.inputs.many::<Mesh>("surfaces").iter().any(|mesh| !mesh.triangles.is_empty())
+}
+
+/// What it moves, which nobody knows before rays have met surfaces.
+pub(super) fn work(run: &Run, n_beams: usize) -> Option<StageWork> {
+    is_cast(run).then_some(StageWork { stage: "shadow", runs: n_beams, moved_bytes: None })
 }
 
 /// Marks in an atlas what the surfaces of the input hide; whether there are any.

@@ -6,6 +6,7 @@
 //! is compared differs by the rounding of the stage under test alone. Real Vulkan, Metal and DX12 devices
 //! interpolate textures with weights of 8 bits: tolerances of tests that filter hold [`filtered`].
 
+use std::cell::RefCell;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -17,7 +18,7 @@ use super::{NodeError, Run, kind};
 use crate::geometry::Mesh;
 pub use crate::gpu::testing::gpu;
 use crate::gpu::{Format, Gpu, Mirror, Shader, wgsl_members};
-use crate::graph::{CancelToken, Inputs, Params, PortType, Value};
+use crate::graph::{CancelToken, Inputs, Moment, Params, PortType, Value};
 use crate::light::{Light, Ordinate, Ordinates};
 use crate::volume::Lattice;
 use crate::volume::field::Field;
@@ -38,6 +39,14 @@ pub fn run(gpu: &Gpu, id: &str, params: Json, inputs: &[(&str, &Value)]) -> Resu
     with_run(gpu, id, params, inputs, |run| (kind(id).expect(id).run)(run))
 }
 
+/// The first output of a node that must not fail and leaves nothing out.
+pub fn full_output(gpu: &Gpu, id: &str, params: Json, inputs: &[(&str, &Value)]) -> Value {
+    let full =
+        |run: &Run| (kind(id).expect(id).run)(&Run { prune: false, report: RefCell::default(), ..*run });
+    let values = with_run(gpu, id, params, inputs, full);
+    values.unwrap_or_else(|error| panic!("{id}: {error}")).remove(0)
+}
+
 /// The first output of a node that must not fail.
 pub fn output(gpu: &Gpu, id: &str, params: Json, inputs: &[(&str, &Value)]) -> Value {
     run(gpu, id, params, inputs).unwrap_or_else(|error| panic!("{id}: {error}")).remove(0)
@@ -51,15 +60,29 @@ pub fn with_run<T>(
     inputs: &[(&str, &Value)],
     body: impl FnOnce(&Run) -> T,
 ) -> T {
+    let shares: Vec<_> = inputs.iter().map(|(port, value)| (*port, *value, 1.0)).collect();
+    with_shares(gpu, id, params, &shares, body)
+}
+
+/// The same where inputs that fade have values with their shares.
+pub fn with_shares<T>(
+    gpu: &Gpu,
+    id: &str,
+    params: Json,
+    inputs: &[(&str, &Value, f64)],
+    body: impl FnOnce(&Run) -> T,
+) -> T {
     let spec = kind(id).expect(id).spec;
     let given: Map<String, Json> = params.as_object().expect("parameters are an object").clone();
-    let params = Params::resolve(spec.params, &given, Path::new("")).expect("valid parameters");
+    let params =
+        Params::resolve(spec.params, &given, Path::new(""), Moment::default()).expect("valid parameters");
     let mut list = Inputs::new(spec);
-    for (port, value) in inputs {
-        list.push(port, (*value).clone());
+    for (port, value, share) in inputs {
+        list.push_share(port, (*value).clone(), *share);
     }
     let cancel = CancelToken::new();
-    body(&Run { params: &params, inputs: &list, gpu, cancel: &cancel })
+    let report = RefCell::default();
+    body(&Run { params: &params, inputs: &list, gpu, cancel: &cancel, prune: true, report })
 }
 
 /// Numbers in 0..1 from a seed (splitmix64).
@@ -148,6 +171,7 @@ impl Scene {
             lattice: self.lattice(),
             sigma_t: Arc::new(sigma_t),
             sigma_t_max: self.sigma_t.data.iter().copied().fold(0.0, f64::max),
+            tau_max: f64::INFINITY,
             albedo: self.albedo,
             g: self.g,
             emission: None,
@@ -194,7 +218,7 @@ impl Scene {
         let points: Vec<Value> = lights.iter().filter_map(point).collect();
         if !points.is_empty() {
             inputs.extend(points.iter().map(|point| ("lights", point)));
-            return output(gpu, "spherical_propagation", Json::Object(Map::new()), &inputs);
+            return full_output(gpu, "spherical_propagation", Json::Object(Map::new()), &inputs);
         }
         let ordinates = lights.iter().filter_map(|light| match light.place {
             Place::Point(_) => None,
@@ -209,7 +233,7 @@ impl Scene {
         let ordinates = Ordinates { ordinates: ordinates.collect(), ambient };
         let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
         inputs.push(("ordinates", &ordinates));
-        output(gpu, "principal_propagation", Json::Object(Map::new()), &inputs)
+        full_output(gpu, "principal_propagation", Json::Object(Map::new()), &inputs)
     }
 
     /// These triangles of index space as a surface of the world, grey of 0.5.
@@ -279,16 +303,20 @@ pub fn oracle_light(beam: &Beam, channel: usize) -> BeamLight {
 
 /// Optical depths at the corners, for each beam.
 pub fn taus(gpu: &Gpu, beams: &Beams) -> Vec<Field<f64>> {
-    let pack = beams.tau.pack;
-    let texels: Vec<f64> = if pack == 1 {
-        gpu.read_texture::<f32>(&beams.tau.texture).expect("tau").into_iter().map(f64::from).collect()
-    } else {
-        gpu.read_texture::<half::f16>(&beams.tau.texture).expect("tau").into_iter().map(f64::from).collect()
+    let Some(tau) = &beams.tau else {
+        assert!(beams.beams.is_empty(), "depths were left out");
+        return Vec::new();
     };
-    let atlas = beams.tau.texture.dims().map(|n| n as usize);
+    let pack = tau.pack;
+    let texels: Vec<f64> = if pack == 1 {
+        gpu.read_texture::<f32>(&tau.texture).expect("tau").into_iter().map(f64::from).collect()
+    } else {
+        gpu.read_texture::<half::f16>(&tau.texture).expect("tau").into_iter().map(f64::from).collect()
+    };
+    let atlas = tau.texture.dims().map(|n| n as usize);
     let of_beam = |n: usize| {
-        let origin = beams.tau.origin(n / pack).map(|n| n as usize);
-        Field::from_fn(beams.tau.corners, |[x, y, z]| {
+        let origin = tau.origin(n / pack).map(|n| n as usize);
+        Field::from_fn(tau.corners, |[x, y, z]| {
             let (x, y, z) = (x + origin[0], y + origin[1], z + origin[2]);
             texels[pack * (x + atlas[0] * (y + atlas[1] * z)) + n % pack]
         })

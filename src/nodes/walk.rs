@@ -6,9 +6,11 @@
 
 use super::Run;
 use crate::gpu::{Bind, Recorder, Sampler};
-use crate::graph::NodeError;
+use crate::graph::{NodeError, StageWork};
 use crate::mirror;
-use crate::wire::{Beam, BeamTexel, Medium, ShapeTexel, TauAtlas};
+use glam::DVec3;
+
+use crate::wire::{Beam, BeamTexel, Medium, Place, ShapeTexel, TauAtlas};
 
 mirror! {
     /// `WalkParams` of `shaders/walk.wgsl`.
@@ -36,6 +38,28 @@ pub(super) fn walk(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtla
         run.finish(recorder)?;
     }
     Ok(atlas)
+}
+
+/// Samples that a walk takes from a corner to the light, the mean over the beams: half of the way through
+/// the medium; of that of a point light half of the medium's mean extent.
+pub(super) fn samples(medium: &Medium, beams: &[Beam]) -> f64 {
+    let occupied = DVec3::from_array(medium.lattice.occupied.map(|n| n as f64));
+    let ways = beams.iter().map(|beam| match beam.place {
+        Place::Parallel(direction) => (occupied / direction.abs().max(DVec3::splat(1e-9))).min_element(),
+        Place::Point(_) => occupied.element_sum() / 3.0,
+    });
+    0.5 * ways.sum::<f64>() / beams.len().max(1) as f64
+}
+
+/// A depth in closed form costs as much as so many samples (measured).
+const SAMPLES_OF_A_SHAPE: f64 = 16.0;
+
+/// What it moves: the samples of each corner and beam, and a depth.
+pub(super) fn work(medium: &Medium, beams: &[Beam]) -> StageWork {
+    let samples = if medium.homogeneous.is_some() { SAMPLES_OF_A_SHAPE } else { samples(medium, beams) };
+    let corners: usize = medium.lattice.dims.iter().map(|n| n + 1).product();
+    let moved_bytes = Some(((corners * beams.len()) as f64 * 4.0 * (1.0 + samples)) as u64);
+    StageWork { stage: "walk", runs: beams.len(), moved_bytes }
 }
 
 fn record(

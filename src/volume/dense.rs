@@ -34,6 +34,23 @@ impl Dense {
         self.world_from_index.x_axis.truncate().length()
     }
 
+    /// For each axis the sum, over the slices across it, of the largest value in each.
+    pub fn slice_maxima(&self) -> [f64; 3] {
+        let [nx, ny, nz] = self.dims;
+        let mut largest = [vec![0.0_f32; nx], vec![0.0; ny], vec![0.0; nz]];
+        for (row, values) in self.values.chunks_exact(nx).enumerate() {
+            let mut of_row = 0.0_f32;
+            for (of_slice, &value) in largest[0].iter_mut().zip(values) {
+                *of_slice = of_slice.max(value);
+                of_row = of_row.max(value);
+            }
+            for (axis, n) in [(1, row % ny), (2, row / ny)] {
+                largest[axis][n] = largest[axis][n].max(of_row);
+            }
+        }
+        largest.map(|slices| slices.into_iter().map(f64::from).sum())
+    }
+
     /// First and last voxel that is not 0; `None` where all are.
     pub fn occupied(&self) -> Option<([usize; 3], [usize; 3])> {
         let [nx, ny, _] = self.dims;
@@ -50,5 +67,19 @@ impl Dense {
             }));
         }
         found
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slices_have_their_largest() {
+        let mut dense = Dense::centered([3, 2, 4], 1.0);
+        for (x, y, z, value) in [(0, 0, 0, 1.0), (0, 1, 3, 4.0), (2, 1, 3, 3.0), (1, 0, 2, 0.5)] {
+            dense.values[x + 3 * (y + 2 * z)] = value;
+        }
+        assert_eq!(dense.slice_maxima(), [4.0 + 0.5 + 3.0, 1.0 + 4.0, 1.0 + 0.5 + 4.0]);
     }
 }

@@ -82,6 +82,12 @@ impl Lattice {
         lattice
     }
 
+    /// Edge of a cell that is not split in meters: of the arguments of [`Self::fit`].
+    pub fn whole_cell_m(min: DVec3, max: DVec3, world_from_voxel: DMat4, max_resolution: usize) -> f64 {
+        let plain = Fineness { max_resolution, wanted_cell_m: f64::INFINITY, max_cells: 0, max_axis: 0 };
+        Self::fit(min, max, world_from_voxel, plain).cell_m
+    }
+
     /// Cells of `ratio` voxels around the box, whose first and last voxel centers are `low` and `high`.
     fn around(low: DVec3, high: DVec3, voxel_m: f64, ratio: f64, world_from_frame: DMat4) -> Self {
         let cell_m = voxel_m * ratio;

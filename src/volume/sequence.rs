@@ -55,6 +55,19 @@ pub enum SequenceError {
     },
 }
 
+/// Which file of a sequence a frame of the scene is.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Playback {
+    /// Frames count from this one; if not given, from the sequence's own first number.
+    pub first_frame: Option<i64>,
+    /// Added to the frame.
+    pub offset: i64,
+    /// After its last frame the sequence begins again.
+    pub loops: bool,
+    /// A frame that is not there is the one before it that is, else the first.
+    pub holds: bool,
+}
+
 impl Sequence {
     /// What a path means: a pattern with `#`, a folder with one numbered sequence, or a file.
     ///
@@ -114,18 +127,12 @@ impl Sequence {
         }
     }
 
-    /// The file of a frame: `frame` counts from `first_frame` (the sequence's own first number if not
-    /// given), `offset` is added, `loops` begins again after the last.
+    /// The file of a frame of the scene, of the first where none is given.
     ///
     /// # Errors
     /// [`SequenceError::Frame`] names the frames that there are.
-    pub fn file(
-        &self,
-        frame: Option<i64>,
-        first_frame: Option<i64>,
-        offset: i64,
-        loops: bool,
-    ) -> Result<PathBuf, SequenceError> {
+    pub fn file(&self, frame: Option<i64>, playback: Playback) -> Result<PathBuf, SequenceError> {
+        let Playback { first_frame, offset, loops, holds } = playback;
         let (pattern, files) = match self {
             Self::Single(path) => return Ok(path.clone()),
             Self::Numbered { pattern, files } => (pattern, files),
@@ -137,7 +144,8 @@ impl Sequence {
         if loops {
             wanted = first + wanted.saturating_sub(first).rem_euclid(last - first + 1);
         }
-        files.get(&wanted).cloned().ok_or_else(|| SequenceError::Frame {
+        let nearest = || files.range(..wanted).next_back().or(files.first_key_value()).filter(|_| holds);
+        files.get(&wanted).or_else(|| Some(nearest()?.1)).cloned().ok_or_else(|| SequenceError::Frame {
             frame: wanted,
             pattern: pattern.clone(),
             first,
@@ -177,15 +185,27 @@ mod tests {
         let folder = folder(&["a_0003.vdb", "a_0004.vdb", "a_0006.vdb", "b.vdb", "notes.txt"]);
         for path in [folder.path().join("a_####.vdb"), folder.path().to_owned()] {
             let sequence = Sequence::find(&path).unwrap();
-            let name = |frame, first, offset, loops| {
-                let file = sequence.file(frame, first, offset, loops);
+            let play = |frame, playback| {
+                let file = sequence.file(frame, playback);
                 file.map(|path| path.file_name().unwrap().to_string_lossy().into_owned())
                     .map_err(|error| error.to_string())
+            };
+            let name = |frame, first_frame, offset, loops| {
+                play(frame, Playback { first_frame, offset, loops, holds: false })
             };
             assert_eq!(name(None, None, 0, false).unwrap(), "a_0003.vdb");
             assert_eq!(name(Some(4), None, 0, false).unwrap(), "a_0004.vdb");
             assert_eq!(name(Some(1), Some(1), 1, false).unwrap(), "a_0004.vdb");
             assert_eq!(name(Some(7), None, 0, true).unwrap(), "a_0003.vdb");
+            let held = |frame, loops| {
+                play(Some(frame), Playback { loops, holds: true, ..Default::default() }).unwrap()
+            };
+            // Before the first, there, in a gap, after the last; 9 is 5 the second time.
+            assert_eq!(
+                [1, 4, 5, 7].map(|frame| held(frame, false)[2..6].to_owned()),
+                ["0003", "0004", "0004", "0006"]
+            );
+            assert_eq!(held(9, true), "a_0004.vdb");
             let pattern = folder.path().join("a_####.vdb");
             assert_eq!(
                 name(Some(5), None, 0, false).unwrap_err(),

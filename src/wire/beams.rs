@@ -37,8 +37,8 @@ pub struct Beam {
 pub struct Beams {
     /// The lights, in the order of the atlas.
     pub beams: Vec<Beam>,
-    /// tau at the corners of cells.
-    pub tau: TauAtlas,
+    /// tau at the corners of cells; `None` where no light is looked up, or a run was only foretold.
+    pub tau: Option<TauAtlas>,
     /// Radiance from everywhere, which needs no beams [W/(m² sr)].
     pub ambient: [f64; 3],
     /// The grid of the medium that they went through.
@@ -50,6 +50,14 @@ pub struct Beams {
     pub peak: Option<TauAtlas>,
     /// Light that is known already, besides the beams; the residual hands it on to the camera.
     pub fields: Vec<LightField>,
+}
+
+/// The depths of beams as stages read them.
+pub struct Depths {
+    /// Of light that nothing has scattered.
+    pub tau: TauAtlas,
+    /// Of the light that is counted as not scattered: the same, where the peak does not widen.
+    pub star: TauAtlas,
 }
 
 /// Optical depths at the corners of cells. One or two beams have a 32-bit texel each; of more, four share a
@@ -115,24 +123,48 @@ mirror! {
 /// Up to so many beams have texels of their own.
 const SINGLE: usize = 2;
 
+/// How an atlas is laid out.
+#[derive(Debug, Clone, Copy)]
+pub struct AtlasLayout {
+    /// Texels along x, y, z.
+    pub dims: [usize; 3],
+    /// Of a texel.
+    pub format: Format,
+    /// Packs that stand along z.
+    pub packs_per_column: usize,
+    /// Beams that share a texel: 1 or 4.
+    pub pack: usize,
+}
+
+impl AtlasLayout {
+    /// Of so many beams, for textures of at most `max_axis` texels.
+    pub fn new(max_axis: usize, lattice: &Lattice, n_beams: usize) -> Self {
+        let corners = lattice.dims.map(|n| n + 1);
+        let (pack, format) = if n_beams <= SINGLE { (1, Format::R32Float) } else { (4, Format::Rgba16Float) };
+        let n_packs = n_beams.div_ceil(pack).max(1);
+        let packs_per_column = (max_axis / corners[2]).clamp(1, n_packs);
+        let columns = n_packs.div_ceil(packs_per_column);
+        let dims = [corners[0], corners[1] * columns, corners[2] * packs_per_column];
+        Self { dims, format, packs_per_column, pack }
+    }
+
+    /// Memory that it takes.
+    pub fn bytes(&self) -> u64 {
+        self.dims.iter().product::<usize>() as u64 * self.format.texel_bytes()
+    }
+}
+
 impl TauAtlas {
     /// Room for `n_beams`.
     ///
     /// # Errors
     /// [`GpuError`] where the device has no room.
     pub fn new(gpu: &Gpu, lattice: &Lattice, n_beams: usize) -> Result<Self, GpuError> {
-        let corners = lattice.dims.map(|n| n + 1);
-        let (pack, format) = if n_beams <= SINGLE { (1, Format::R32Float) } else { (4, Format::Rgba16Float) };
-        let n_packs = n_beams.div_ceil(pack).max(1);
-        let packs_per_column = (gpu.max_texture_3d() as usize / corners[2]).clamp(1, n_packs);
-        let columns = n_packs.div_ceil(packs_per_column);
-        let texture = gpu.texture3(
-            "optical depths of the beams",
-            [corners[0], corners[1] * columns, corners[2] * packs_per_column],
-            format,
-            "lower light_decomposition.count or medium.max_resolution",
-        )?;
-        Ok(Self { texture: Arc::new(texture), corners, packs_per_column, pack })
+        let AtlasLayout { dims, format, packs_per_column, pack } =
+            AtlasLayout::new(gpu.max_texture_3d() as usize, lattice, n_beams);
+        let remedy = "lower light_decomposition.count or medium.max_resolution";
+        let texture = gpu.texture3("optical depths of the beams", dims, format, remedy)?;
+        Ok(Self { texture: Arc::new(texture), corners: lattice.dims.map(|n| n + 1), packs_per_column, pack })
     }
 
     /// First texel of a pack.
@@ -182,35 +214,32 @@ impl TauAtlas {
 }
 
 impl Beams {
-    /// No light at all.
-    ///
-    /// # Errors
-    /// [`GpuError`] where the device has no room.
-    pub fn none(gpu: &Gpu, lattice: &Lattice) -> Result<Self, GpuError> {
-        let nowhere = Lattice { dims: [0; 3], ..lattice.clone() };
-        Ok(Self {
-            beams: Vec::new(),
-            tau: TauAtlas::new(gpu, &nowhere, 0)?,
+    /// Light without depths.
+    pub fn new(lattice: &Lattice, beams: Vec<Beam>) -> Self {
+        Self {
+            beams,
+            tau: None,
             ambient: [0.0; 3],
             lattice: lattice.clone(),
             has_shadows: false,
             peak: None,
             fields: Vec::new(),
-        })
+        }
     }
 
-    /// All of `parts` as one; a single part is shared, not copied.
+    /// All of `parts` as one; a single part is shared, not copied. Of parts with and without depths those
+    /// without have no light, and are dropped.
     ///
     /// # Errors
     /// [`GpuError`] where the device has no room.
     pub fn merge(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
-        let lit: Vec<&Beams> = parts.iter().copied().filter(|part| !part.beams.is_empty()).collect();
+        let carried: Vec<&Beams> = parts.iter().copied().filter(|part| part.tau.is_some()).collect();
         let ambient = std::array::from_fn(|c| parts.iter().map(|part| part.ambient[c]).sum());
         let fields = parts.iter().flat_map(|part| part.fields.iter().cloned()).collect();
-        let merged = match lit.as_slice() {
-            [] => Self::none(gpu, lattice)?,
+        let merged = match carried.as_slice() {
+            [] => Self::new(lattice, parts.iter().flat_map(|part| part.beams.iter().copied()).collect()),
             [one] => (*one).clone(),
-            _ => Self::concatenate(gpu, lattice, &lit)?,
+            _ => Self::concatenate(gpu, lattice, &carried)?,
         };
         Ok(Self { ambient, fields, ..merged })
     }
@@ -226,9 +255,22 @@ impl Beams {
         gpu.buffer_from("beams", &texels, "lower light_decomposition.count")
     }
 
-    /// Depths of the light that is counted as not scattered.
-    pub fn star(&self) -> &TauAtlas {
-        self.peak.as_ref().unwrap_or(&self.tau)
+    /// Beams that share a texel of the depths.
+    pub fn pack(&self) -> usize {
+        self.tau.as_ref().map_or(1, |tau| tau.pack)
+    }
+
+    /// The depths that stages are bound to; of light that is not looked up, an atlas of nothing.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the device has no room.
+    pub fn depths(&self, gpu: &Gpu) -> Result<Depths, GpuError> {
+        let tau = match &self.tau {
+            Some(tau) => tau.clone(),
+            None => TauAtlas::new(gpu, &Lattice { dims: [0; 3], ..self.lattice.clone() }, 0)?,
+        };
+        let star = self.peak.clone().unwrap_or_else(|| tau.clone());
+        Ok(Depths { tau, star })
     }
 
     /// Packs of four are copied whole: a part whose number of beams is no multiple of 4 is filled up with
@@ -243,24 +285,25 @@ impl Beams {
             beams.extend(&part.beams);
             beams.resize(beams.len().next_multiple_of(pack), dark);
         }
-        let joined = |atlas_of: fn(&Beams) -> &TauAtlas| -> Result<TauAtlas, GpuError> {
+        let depths = parts.iter().map(|part| part.depths(gpu)).collect::<Result<Vec<_>, _>>()?;
+        let joined = |atlas_of: fn(&Depths) -> &TauAtlas| -> Result<TauAtlas, GpuError> {
             let joined = TauAtlas::new(gpu, lattice, pack * n_packs)?;
             let mut recorder = gpu.recorder("merge beams");
             let mut to = 0;
-            for part in parts {
+            for (part, depths) in parts.iter().zip(&depths) {
                 let n_beams = part.beams.len();
                 for four in 0..n_beams.div_ceil(pack) {
-                    atlas_of(part).copy_pack(gpu, &mut recorder, four, n_beams, &joined, to)?;
+                    atlas_of(depths).copy_pack(gpu, &mut recorder, four, n_beams, &joined, to)?;
                     to += 1;
                 }
             }
             recorder.finish()?;
             Ok(joined)
         };
-        let tau = joined(|part| &part.tau)?;
-        let peak =
-            if parts.iter().any(|part| part.peak.is_some()) { Some(joined(Beams::star)?) } else { None };
+        let tau = Some(joined(|depths| &depths.tau)?);
+        let has_peak = parts.iter().any(|part| part.peak.is_some());
+        let peak = if has_peak { Some(joined(|depths| &depths.star)?) } else { None };
         let has_shadows = parts.iter().any(|part| part.has_shadows);
-        Ok(Self { beams, tau, peak, has_shadows, ..Self::none(gpu, lattice)? })
+        Ok(Self { tau, peak, has_shadows, ..Self::new(lattice, beams) })
     }
 }

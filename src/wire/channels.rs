@@ -1,8 +1,4 @@
-//! How many channels a scene needs (DESIGN 7): one where the medium is grey and all light has one
-//! chromaticity, three otherwise. Flames of several temperatures have several.
-
-use super::{Beams, Medium};
-use crate::light::chromaticity;
+//! The channels that are solved: one where one color is all there is (`planner::channels`), else three.
 
 /// The channels that are solved, and what they are multiplied by in the end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -13,36 +9,9 @@ pub struct Channels {
     pub color: [f64; 3],
 }
 
-/// Components of two chromaticities that differ by less are the same color.
-const SAME: f64 = 1e-6;
-
 impl Channels {
     /// All three.
     pub const RGB: Self = Self { count: 3, color: [1.0; 3] };
-
-    /// What this medium in this light needs.
-    pub fn of(medium: &Medium, beams: &Beams) -> Self {
-        if medium.emission.is_some() || beams.fields.iter().any(|field| field.channels.count == 3) {
-            return Self::RGB;
-        }
-        let of_fields = beams.fields.iter().map(|field| field.channels.color);
-        let of_beams = beams.beams.iter().map(|beam| beam.power);
-        Self::of_powers(medium, of_fields.chain(of_beams).chain([beams.ambient]))
-    }
-
-    /// What this medium needs in lights of these powers.
-    pub fn of_powers(medium: &Medium, powers: impl Iterator<Item = [f64; 3]>) -> Self {
-        let mut powers = powers.filter_map(chromaticity);
-        let Some((_, color)) = powers.next() else {
-            return Self { count: 1, color: [1.0; 3] };
-        };
-        let same = |other: [f64; 3]| other.iter().zip(color).all(|(a, b)| (a - b).abs() < SAME);
-        if medium.is_grey() && powers.all(|(_, other)| same(other)) {
-            Self { count: 1, color }
-        } else {
-            Self::RGB
-        }
-    }
 
     /// A power per channel: itself for three; for one, what `color` is multiplied by.
     pub fn project(&self, power: [f64; 3]) -> [f64; 3] {

@@ -16,10 +16,12 @@ pub struct Medium {
     pub lattice: Lattice,
     /// sigma_t [1/m] at the centers of cells; one R32Float texel a cell, void on the border.
     pub sigma_t: Arc<Texture>,
-    /// Above 0 where a sample in a block of 8³ cells can meet matter or glow; one R32Float texel a block.
-    pub blocks: Arc<Texture>,
+    /// Where there is something.
+    pub blocks: Arc<Blocks>,
     /// The largest sigma_t [1/m].
     pub sigma_t_max: f64,
+    /// No straight way has a larger optical depth.
+    pub tau_max: f64,
     /// sigma_s / sigma_t.
     pub albedo: [f64; 3],
     /// Mean cosine of the phase function.
@@ -65,14 +67,42 @@ mirror! {
     }
 }
 
+/// Kinds of a [`ShapeTexel`], as `shaders/lib/shape.wgsl` has them.
+const VOXELS: u32 = 0;
+const ELLIPSOID: u32 = 1;
+const BOX: u32 = 2;
+
 /// Edge of a block in cells.
 const BLOCK: usize = 8;
+
+/// The largest of sigma_t [1/m] and emission that a sample in each block of 8³ cells can meet.
+pub struct Blocks {
+    /// One R32Float texel a block.
+    pub texture: Texture,
+    /// The same numbers.
+    pub largest: Vec<f32>,
+}
+
+impl Blocks {
+    /// Blocks that are not empty.
+    pub fn n_filled(&self) -> usize {
+        self.largest.iter().filter(|largest| **largest > 0.0).count()
+    }
+
+    /// The number of the block that a position of index space lies in; outside, of the nearest one.
+    pub fn at(&self, p: DVec3) -> f32 {
+        let dims = self.texture.dims();
+        let at =
+            |axis: usize| (((p[axis] + 0.5) / BLOCK as f64).max(0.0) as usize).min(dims[axis] as usize - 1);
+        self.largest[at(0) + dims[0] as usize * (at(1) + dims[1] as usize * at(2))]
+    }
+}
 
 /// Which blocks of cells hold something, so that rays pass empty ones in one step.
 ///
 /// # Errors
 /// What the device reports.
-pub fn occupancy(gpu: &Gpu, sigma_t: &Texture, emission: Option<&Emission>) -> Result<Texture, GpuError> {
+pub fn occupancy(gpu: &Gpu, sigma_t: &Texture, emission: Option<&Emission>) -> Result<Blocks, GpuError> {
     let n_blocks = sigma_t.dims().map(|n| (n as usize).div_ceil(BLOCK));
     let blocks =
         gpu.texture3("blocks of cells", n_blocks, Format::R32Float, "lower medium.max_resolution")?;
@@ -83,7 +113,8 @@ pub fn occupancy(gpu: &Gpu, sigma_t: &Texture, emission: Option<&Emission>) -> R
     let mut recorder = gpu.recorder("occupancy");
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&blocks)]), n_blocks);
     recorder.finish()?;
-    Ok(blocks)
+    let largest = gpu.read_texture(&blocks)?;
+    Ok(Blocks { texture: blocks, largest })
 }
 
 impl Medium {
@@ -93,7 +124,7 @@ impl Medium {
         match self.homogeneous {
             Some(shape) => ShapeTexel {
                 center: single(shape.center),
-                kind: if shape.ellipsoid { 1 } else { 2 },
+                kind: if shape.ellipsoid { ELLIPSOID } else { BOX },
                 half_extent: single(shape.half_extent),
                 sigma_t: self.sigma_t_max as f32,
             },
@@ -102,17 +133,12 @@ impl Medium {
                 let last = DVec3::from_array(self.lattice.occupied.map(|n| (n - 1) as f64));
                 ShapeTexel {
                     center: single(0.5 * last),
-                    kind: 0,
+                    kind: VOXELS,
                     half_extent: single(0.5 * last),
                     sigma_t: 0.0,
                 }
             }
         }
-    }
-
-    /// Whether all channels scatter alike.
-    pub fn is_grey(&self) -> bool {
-        self.albedo.iter().all(|&albedo| albedo == self.albedo[0])
     }
 }
 
@@ -124,6 +150,14 @@ mod tests {
     #[test]
     fn blocks_are_as_large_in_the_shaders() {
         let shader = Shader::expand("occupancy.wgsl", &[("emission", "true".to_owned())]).unwrap();
-        assert_eq!(wgsl_constant(&shader, "BLOCK").unwrap(), BLOCK as i64);
+        assert_eq!(wgsl_constant(&shader, "BLOCK").unwrap(), [BLOCK as f64]);
+    }
+
+    #[test]
+    fn shapes_have_the_same_numbers_in_the_shaders() {
+        let shader = Shader::expand("lib/shape.wgsl", &[]).unwrap();
+        for (name, kind) in [("VOXELS", VOXELS), ("ELLIPSOID", ELLIPSOID), ("BOX", BOX)] {
+            assert_eq!(wgsl_constant(&shader, name).unwrap(), [f64::from(kind)], "{name}");
+        }
     }
 }

@@ -15,12 +15,12 @@ mod residual;
 mod surface_light;
 mod surfaces;
 
-pub use beams::{Beam, BeamTexel, Beams, Place, RepackParams, TauAtlas};
+pub use beams::{AtlasLayout, Beam, BeamTexel, Beams, Depths, Place, RepackParams, TauAtlas};
 pub use channels::Channels;
 pub use emission::{Emission, Heat};
 pub use importance::Importance;
 pub use light_field::LightField;
-pub use medium::{Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
+pub use medium::{Blocks, Homogeneous, Medium, OccupancyParams, ShapeTexel, occupancy};
 pub use residual::Residual;
 pub use surface_light::SurfaceLight;
 pub use surfaces::{SurfaceNode, SurfaceTriangle, Surfaces};

@@ -9,8 +9,11 @@ use crate::volume::Lattice;
 /// The residual field of a medium.
 #[derive(Clone)]
 pub struct Residual {
-    /// phi [W/m²] and F [W/m²] of each cell in an Rgba32Float texel; channels stand along z.
+    /// phi [W/m²] and F [W/m²] of each cell in an Rgba32Float texel; channels stand along z. One cell for all
+    /// where they are the same everywhere.
     pub moments: Arc<Texture>,
+    /// Whether they are 0 everywhere: then they need not be looked at.
+    pub is_dark: bool,
     /// The grid of the medium that was solved.
     pub lattice: Lattice,
     /// Which channels they are.

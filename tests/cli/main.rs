@@ -7,6 +7,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod desk;
+mod explain;
 mod look;
 mod refused;
 mod render;

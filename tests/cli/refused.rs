@@ -113,7 +113,7 @@ fn outputs_that_cannot_be() {
     );
     refused(
         &["--frames", "1-2"],
-        "--frames: the graph has no load_vdb whose frame could change; leave it out",
+        "--frames: nothing in the graph changes with the frame, no load_vdb and no parameter with keys; leave it out",
     );
     refused(
         &["--size", "16385x1"],
@@ -173,7 +173,7 @@ fn graphs_with_no_or_several_outputs() {
 fn words_that_are_no_subcommand() {
     let desk = Desk::new();
     desk.run_blind(&["rendr", "g.json"]).refused(
-        "error: there is no subcommand 'rendr'; did you mean 'render'? allowed are render, inspect, compare, \
+        "error: there is no subcommand 'rendr'; did you mean 'render'? allowed are render, explain, inspect, compare, \
          nodes, doctor\n",
     );
     desk.run_blind(&["g.json"])

@@ -35,7 +35,7 @@ fn picture_and_its_costs() {
     let names: Vec<&str> = nodes.iter().map(|node| node["name"].as_str().unwrap()).collect();
     assert_eq!(names, ["ball", "medium", "sun", "split", "beams", "camera", "march", "save"]);
     let keys: Vec<&String> = nodes[6].as_object().unwrap().keys().collect();
-    assert_eq!(keys, ["name", "type", "cpu_ms", "gpu_ms", "bytes", "cached"]);
+    assert_eq!(keys, ["name", "type", "cpu_ms", "gpu_ms", "bytes", "cached", "decisions"]);
     assert_eq!((&nodes[6]["type"], &nodes[6]["cached"]), (&Json::from("raymarch"), &Json::from(false)));
 }
 
@@ -97,6 +97,35 @@ fn frames_are_kept_and_failures_counted() {
     assert!(desk.path("q_0001.exr").is_file() && desk.path("q_0002.exr").is_file());
     let ran = render("7-8", "r.exr");
     assert_eq!((ran.code, ran.stderr.lines().count()), (Some(2), 2), "all failed: {}", ran.stderr);
+}
+
+#[test]
+fn a_camera_moves_over_frames() {
+    if !has_adapter() {
+        return;
+    }
+    let desk = Desk::new();
+    desk.write_graph("g.json", BALL, r#""type": "load_vdb", "path": "a.vdb""#);
+    desk.write("a.vdb", small_vdb());
+    let moving = r#"camera.position={"keys": [[1, [0, 0, 5]], [3, [2, 0, 5]]]}"#;
+    let frames = ["render", "g.json", "--frames", "1-4", "-o", "p.exr", "--stats", "s.json", "--set", moving];
+    desk.run(&frames).done();
+    let pixels = |name: &str| image::read(&desk.path(name)).unwrap().beauty().to_vec();
+    assert_ne!(pixels("p_0001.exr"), pixels("p_0002.exr"));
+    assert_eq!(pixels("p_0003.exr"), pixels("p_0004.exr"), "after the last key");
+    // Half way, as if it were written there.
+    desk.run(&["render", "g.json", "-o", "half.exr", "--set", "camera.position=[1, 0, 5]"]).done();
+    assert_eq!(pixels("p_0002.exr"), pixels("half.exr"));
+    // Without a frame it is the first key's.
+    desk.run(&["render", "g.json", "-o", "still.exr", "--set", moving]).done();
+    assert_eq!(pixels("p_0001.exr"), pixels("still.exr"));
+    // What the frame does not change is not done again: a file without numbers is the same in each.
+    let stats = desk.json("s.json");
+    let again = stats["frames"][1]["nodes"].as_array().unwrap().iter().filter(|node| node["cached"] == false);
+    assert_eq!(
+        again.map(|node| node["name"].as_str().unwrap()).collect::<Vec<_>>(),
+        ["camera", "march", "save"]
+    );
 }
 
 #[cfg(unix)]

@@ -42,7 +42,7 @@ fn types_and_parameters_of_all_nodes() {
         found,
         [
             "node 'a': unknown type 'shap'; did you mean 'shape'? allowed are number, sum, pair, \
-             paint, save, file, shape, medium",
+             paint, save, file, shape, medium, fade",
             "node 'medium': albedo[1] = 1.2 is outside 0..=1; the default is [1,1,1]",
             "node 'medium': g = 1 is outside -1 < value < 1; the default is 0",
             "node 'file': path is missing; write a path as a string",
@@ -127,7 +127,7 @@ fn an_input_is_missed_only_where_it_is_needed() {
     assert_eq!(
         lines(nodes, wires),
         ["node 's': input 'lights' is empty; wire light into it, which number.light, sum.light, \
-          pair.difference or pair.total give"]
+          pair.difference, pair.total or fade.light give"]
     );
     let document = document(nodes, wires);
     let found = check(&document, CATALOG, Target::Nodes(&["pair", "one"]));

@@ -16,6 +16,12 @@ const READABLE: &str = r#"{
         "flame": "flame"
       },
       "nothing": null,
+      "albedo": {
+        "keys": [
+          [1, 0.5],
+          [8, [1, 0.5, 0]]
+        ]
+      },
       "empty": {},
       "list": []
     }

@@ -1,4 +1,4 @@
-//! JSON as people like to read and diff it: two spaces, one entry a line, numbers of a list on one line.
+//! JSON as people like to read and diff it: two spaces, one entry a line, but a vector and a key on one.
 //!
 //! serde_json's own pretty printer sets every component of a vector on a line of its own. Tested in the
 //! tests of the document.
@@ -15,13 +15,17 @@ pub fn pretty(json: &Json) -> String {
 
 fn write(json: &Json, depth: usize, text: &mut String) {
     match json {
-        Json::Array(items) if !items.is_empty() && !items.iter().all(Json::is_number) => {
+        Json::Array(items) if !is_short(items) => {
             let entries = items.iter().map(|item| (String::new(), item));
             write_lines(['[', ']'], entries, depth, text);
         }
         Json::Array(items) => {
-            let items: Vec<String> = items.iter().map(Json::to_string).collect();
-            *text += &format!("[{}]", items.join(", "));
+            text.push('[');
+            for (idx, item) in items.iter().enumerate() {
+                *text += if idx == 0 { "" } else { ", " };
+                write(item, depth, text);
+            }
+            text.push(']');
         }
         Json::Object(fields) if !fields.is_empty() => {
             let entries =
@@ -29,6 +33,15 @@ fn write(json: &Json, depth: usize, text: &mut String) {
             write_lines(['{', '}'], entries, depth, text);
         }
         other => *text += &other.to_string(),
+    }
+}
+
+/// A vector, or a key of a frame and a number or a vector.
+fn is_short(items: &[Json]) -> bool {
+    let is_vector = |items: &[Json]| items.iter().all(Json::is_number);
+    match items {
+        [Json::Number(_), Json::Array(items)] => is_vector(items),
+        items => is_vector(items),
     }
 }
 

@@ -70,7 +70,7 @@ fn names_that_are_not_there() {
     assert_eq!(
         error("odd.g", "1"),
         "cannot set 'odd.g': unknown type 'od'; allowed are number, sum, pair, paint, save, file, \
-         shape, medium"
+         shape, medium, fade"
     );
     assert_eq!(
         error("medium.albdo", "1"),

@@ -98,6 +98,31 @@ fn only_what_changed_runs_again() {
 }
 
 #[test]
+fn what_fades_runs_once_for_all_frames() {
+    let mut bench = Bench::new();
+    bench.set("b.x", r#"{"keys": [[0, 0], [4, 4], [8, 1]]}"#);
+    let fade = r#"{"type": "fade"}"#;
+    let node =
+        Document::parse(&format!(r#"{{"tyndall": 1, "nodes": {{"fade": {fade}}}}}"#), Path::new("")).unwrap();
+    bench.document.nodes.extend(node.nodes);
+    bench.document.wires.push("b.light -> fade.light".parse().unwrap());
+    let mut at = |frame| {
+        bench.document.frame = Some(frame);
+        let evaluation = bench.run(Target::Nodes(&["fade"]));
+        (number(&evaluation, "fade", "light"), bench.host.take())
+    };
+    let ran = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect::<Vec<_>>();
+    assert_eq!(at(6), (2.5, ran(&["b@4", "b@8", "fade"])));
+    assert_eq!(at(7), (1.75, ran(&["fade"])));
+    // Of its own frame it is the same number that others fade from.
+    assert_eq!(at(8), (1.0, ran(&["fade"])));
+    assert_eq!(at(3), (3.0, ran(&["b@0", "fade"])));
+    // From 1 to 1: what comes of it is found again.
+    assert_eq!(at(10), (1.0, ran(&[])));
+    assert_eq!(at(11), (1.0, ran(&[])));
+}
+
+#[test]
 fn the_other_output_of_a_node_is_another_input() {
     let mut bench = Bench::new();
     bench.document.wires[2] = "pair.difference -> paint.light".parse().unwrap();
@@ -120,13 +145,17 @@ fn identity_of_the_host_is_in_the_key() {
 fn events_tell_it_as_it_happens() {
     let mut bench = Bench::new();
     bench.run(Target::Nodes(&["a"]));
-    let [Event::Started { name }, Event::Finished { cached, bytes, cpu_ms, .. }] = &bench.events[..] else {
+    let [Event::Started { name }, Event::Finished { cached, bytes, cpu_ms, report, .. }] = &bench.events[..]
+    else {
         panic!("{:?}", bench.events);
     };
     assert_eq!((name.as_str(), *cached, *bytes), ("a", false, 8));
     assert!(*cpu_ms >= 0.0);
+    assert_eq!(report.decisions[0].data, "x = 2");
+    // A node that did not run again still tells it.
+    let report = Arc::clone(report);
     bench.run(Target::Nodes(&["a"]));
-    let cached = Event::Finished { name: "a".to_owned(), cached: true, cpu_ms: 0.0, bytes: 8 };
+    let cached = Event::Finished { name: "a".to_owned(), cached: true, cpu_ms: 0.0, bytes: 8, report };
     assert_eq!(bench.events, [cached]);
 }
 

@@ -20,7 +20,7 @@ const EMISSION: &[ParamSpec] =
     &[ParamSpec::text("flame", "flame"), ParamSpec::float("scale", 1.0).above(0.0)];
 
 fn resolve(json: Json) -> Result<Params, Vec<ParamProblem>> {
-    Params::resolve(ALL, json.as_object().unwrap(), Path::new("folder"))
+    Params::resolve(ALL, json.as_object().unwrap(), Path::new("folder"), Moment::default())
 }
 
 fn messages(json: Json) -> Vec<String> {
@@ -154,7 +154,8 @@ fn what_has_no_default_is_missed() {
     assert_eq!(problems[0].message, "path is missing; write a path as a string");
     assert_eq!(problems[0].field, "path");
     let given = json!({"x": 1});
-    let problems = Params::resolve(&[], given.as_object().unwrap(), Path::new("")).unwrap_err();
+    let problems =
+        Params::resolve(&[], given.as_object().unwrap(), Path::new(""), Moment::default()).unwrap_err();
     assert_eq!(problems[0].message, "unknown parameter 'x'; none are taken here");
 }
 

@@ -24,6 +24,8 @@ pub struct ParamSpec {
     pub soft: Option<(f64, f64)>,
     /// What is allowed, for each component.
     pub hard: Limits,
+    /// What the frame does to it.
+    pub timing: Timing,
     /// What its user reads.
     pub doc: &'static str,
 }
@@ -55,6 +57,25 @@ pub enum ParamKind {
     Direction,
     /// An object with these parameters, or null.
     Record(&'static [ParamSpec]),
+}
+
+impl ParamKind {
+    /// Whether `{"keys": …}` may stand for it.
+    pub fn takes_keys(self) -> bool {
+        matches!(self, Self::Float | Self::Vector(_) | Self::Rgb | Self::Direction)
+    }
+}
+
+/// What the frame that is looked at does to a parameter. One that the frame sets chooses files and nothing
+/// else: cache keys hold the identity of the files instead.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Timing {
+    /// Nothing, unless it has keys.
+    Own,
+    /// It is the frame, whatever the file says.
+    Frame,
+    /// It is true where a node is looked at for the sake of another frame.
+    Aside,
 }
 
 /// What holds when the file says nothing.
@@ -93,7 +114,8 @@ pub struct Limits {
 
 impl ParamSpec {
     const fn new(name: &'static str, kind: ParamKind, default: Default) -> Self {
-        Self { name, kind, unit: "", default, soft: None, hard: Limits::NONE, doc: "" }
+        let timing = Timing::Own;
+        Self { name, kind, unit: "", default, soft: None, hard: Limits::NONE, timing, doc: "" }
     }
 
     /// A finite number.
@@ -202,6 +224,12 @@ impl ParamSpec {
         self
     }
 
+    /// What the frame does to it.
+    pub const fn timed(mut self, timing: Timing) -> Self {
+        self.timing = timing;
+        self
+    }
+
     /// What a slider spans.
     pub const fn soft(mut self, min: f64, max: f64) -> Self {
         self.soft = Some((min, max));
@@ -301,9 +329,12 @@ impl Limits {
 
 impl fmt::Display for Limits {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // 1e28, not its 29 digits.
+        let number = |x: f64| if x.abs() < 1e16 { format!("{x}") } else { format!("{x:e}") };
+        let (min, max) = (self.min.map(number), self.max.map(number));
         let low = if self.open_min { "<" } else { "<=" };
         let high = if self.open_max { "<" } else { "<=" };
-        match (self.min, self.max) {
+        match (min, max) {
             (Some(min), Some(max)) if !self.open_min && !self.open_max => {
                 write!(f, "{min}..={max}")
             }
@@ -342,6 +373,7 @@ mod tests {
         assert_eq!(form(ParamSpec::float("x", 1.0).above(0.0)), "a number, value > 0");
         assert_eq!(form(ParamSpec::float("x", 1.0).at_most(2.5)), "a number, value <= 2.5");
         assert_eq!(form(ParamSpec::float("x", 1.0).below(2.0)), "a number, value < 2");
+        assert_eq!(form(ParamSpec::float("x", 1.0).between(0.0, 1e28)), "a number, 0..=1e28");
         assert_eq!(form(ParamSpec::float("x", 1.0).above(0.0).at_most(1.0)), "a number, 0 < value <= 1");
         assert_eq!(form(ParamSpec::choice("x", KINDS)), "one of sphere, box");
         assert_eq!(form(ParamSpec::int_choice("x", &[0, 8, 14])), "one of 0, 8, 14");

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::{NodeKind, Run, no_files};
+use super::{NodeKind, Rules, Run, no_files};
 use crate::camera::Camera;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "camera",

@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::{NodeKind, Run, no_files, walk};
+use super::{NodeKind, Rules, Run, no_files, walk};
 use crate::camera::Camera;
 use crate::gpu::Bind;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
@@ -21,7 +21,7 @@ use crate::wire::{Beam, Importance, Medium, Place, ShapeTexel};
 pub(super) mod oracle;
 mod view;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "importance_propagation",

@@ -19,7 +19,7 @@ use std::sync::Arc;
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
 use super::sources::{Sources, with_sums};
-use super::{Effort, Kind, level, solver};
+use super::{Effort, level, solver};
 use crate::gpu::{Bind, Buffer, Format, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
@@ -43,7 +43,7 @@ mirror! {
 
 /// Cells that look for surfaces, at most: in the last bounce, which is seen, and in the one before.
 const LIT_CELLS: [usize; 2] = [1 << 16, 1 << 13];
-/// Threads along x of one dispatch, 65,535 groups of 64; `surface_light.wgsl`.
+/// Threads along x of one dispatch, 65,535 groups of 64, as `surface_light.wgsl` has it.
 const ROW: usize = 4_194_240;
 
 /// Solves for the residual with what surfaces send back.
@@ -68,11 +68,7 @@ pub(super) fn solve(
     };
     let of_beams = super::sources::sources(run, medium, beams, &channels, problem)?;
     let mut scene = Scene { run, medium, beams, problem, channels, list, params, points, of_beams };
-    // What only lights surfaces need not be as good as what is seen: all grids but the finest are solved.
-    let rough = match effort.kind {
-        Kind::Cascade => Effort { sweeps: 0, coarse_sweeps: effort.coarse_sweeps.min(8), ..effort },
-        _ => effort,
-    };
+    let rough = effort.rough();
     let unseen = scene.scattered(&scene.of_beams, &scene.settle(&scene.of_beams, rough)?)?;
     let unlit = scene.points.irradiances(run.gpu)?;
     let glance = scene.irradiances(&unseen, &unlit, Use::Glance)?;
@@ -165,7 +161,7 @@ impl Scene<'_> {
         let inputs = [
             sigma_t,
             clamp,
-            Bind::Texture(&self.medium.blocks),
+            Bind::Texture(&self.medium.blocks.texture),
             nodes,
             triangles,
             Bind::Buffer(&self.points.corners),
@@ -198,7 +194,7 @@ impl Scene<'_> {
         let inputs = [
             Bind::Texture(&self.medium.sigma_t),
             Bind::Sampler(&sampler),
-            Bind::Texture(&self.medium.blocks),
+            Bind::Texture(&self.medium.blocks.texture),
             Bind::Texture(scattered),
             nodes,
             triangles,
@@ -207,7 +203,7 @@ impl Scene<'_> {
             Bind::Buffer(on_surfaces),
             Bind::Buffer(&self.list),
         ];
-        let [pack, _] = self.beams.tau.choices();
+        let pack = ("pack", self.beams.pack().to_string());
         let choices = [
             pack,
             ("narrow", (what_for != Use::Camera).to_string()),

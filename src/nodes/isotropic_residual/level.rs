@@ -68,12 +68,20 @@ mirror! {
 pub(super) struct Problem {
     pub(super) n_channels: usize,
     pub(super) directions: Vec<LineDirection>,
+    /// Whether lobes have a direction.
+    has_lobes: bool,
     g_star: f64,
     channels: [ChannelTexel; 3],
 }
 
 impl Problem {
-    pub(super) fn new(medium: &Medium, channels: &Channels, ambient: [f64; 3], lines: LineSet) -> Self {
+    pub(super) fn new(
+        medium: &Medium,
+        channels: &Channels,
+        ambient: [f64; 3],
+        lines: LineSet,
+        has_lobes: bool,
+    ) -> Self {
         let inflow = channels.project(ambient);
         let texels = std::array::from_fn(|c| {
             let scaled = DeltaScaled::new(medium.albedo[c], medium.g);
@@ -85,7 +93,13 @@ impl Problem {
             }
         });
         let g_star = DeltaScaled::new(1.0, medium.g).g_star;
-        Self { n_channels: channels.count, directions: lines.directions(), g_star, channels: texels }
+        Self {
+            n_channels: channels.count,
+            directions: lines.directions(),
+            has_lobes,
+            g_star,
+            channels: texels,
+        }
     }
 
     /// Shader parameters of a level.
@@ -218,7 +232,6 @@ impl Scratch {
 
 /// A grid of the cascade with everything bound.
 pub(super) struct Level {
-    pub(super) dims: [usize; 3],
     pub(super) params: LevelParams,
     /// phi and F after the last sweep.
     pub(super) moments: Texture,
@@ -265,9 +278,10 @@ impl Level {
             .map(|_| gpu.buffer("lobes", lobe_bytes, REMEDY))
             .collect::<Result<Vec<Buffer>, GpuError>>()?;
 
+        let choices = [("lobes", problem.has_lobes.to_string())];
         let [lobe, sweep, partial, to_lobes, to_moments, balance_stage] =
             ["lobe", "sweep", "gather_partial", "gather_lobes", "gather_moments", "balance"]
-                .map(|stage| gpu.stage(&format!("isotropic_residual/{stage}"), &[]));
+                .map(|stage| gpu.stage(&format!("isotropic_residual/{stage}"), &choices));
         let (lobe, sweep, partial) = (lobe?, sweep?, partial?);
         let (to_lobes, to_moments, balance_stage) = (to_lobes?, to_moments?, balance_stage?);
         let span = |axis: fn(&Lines) -> usize| {
@@ -337,17 +351,7 @@ impl Level {
             balance_stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&balance)])
         };
         let (rebalance, keep) = (bind_balance(1), bind_balance(0));
-        Ok(Self {
-            dims,
-            params,
-            moments,
-            balance,
-            layers,
-            n_channels: problem.n_channels,
-            steps,
-            rebalance,
-            keep,
-        })
+        Ok(Self { params, moments, balance, layers, n_channels: problem.n_channels, steps, rebalance, keep })
     }
 
     /// Cells of all channels.

@@ -11,22 +11,29 @@
 //! Inputs: a medium and its beams. Output: phi and F [W/m²] a cell and channel. Held against the f64
 //! oracle beside it, the slabs of adding–doubling, and the invariants of DESIGN 8.
 
-use super::{NodeKind, Run, beams_through, no_files};
+use std::sync::Arc;
+
+use super::{NodeKind, Rules, Run, beams_through, check_media, no_files};
 use crate::geometry::Mesh;
+use crate::gpu::Format;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::optics::directions::LineSet;
-use crate::wire::{Channels, Medium, Surfaces};
+use crate::planner::Scattering;
+use crate::wire::{Beams, Channels, Medium, Residual, Surfaces};
+use plan::Plan;
 
 mod bounce;
 mod fields;
 mod level;
 #[cfg(test)]
 pub(super) mod oracle;
+mod plan;
 mod solver;
 mod sources;
 mod thick;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind =
+    NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Foretold(foretell) };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "isotropic_residual",
@@ -38,8 +45,8 @@ static SPEC: NodeSpec = NodeSpec {
           medium and by each other, hide ambient light, and send light back, twice; scattered light passes through those inside.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "where the light scatters"),
-        PortSpec::new("beams", PortType::Beams, "the light that enters; without it, only what the medium emits").many().optional(),
-        PortSpec::new("surfaces", PortType::Surface, "what sends light back into the medium").many().optional(),
+        PortSpec::new("beams", PortType::Beams, "the light that enters").many().optional("there is only what the medium emits"),
+        PortSpec::new("surfaces", PortType::Surface, "what sends light back into the medium").many().optional("nothing sends light back"),
     ],
     outputs: &[PortSpec::new("residual", PortType::Residual, "the scattered light, for raymarch")],
     params: &[
@@ -47,7 +54,7 @@ static SPEC: NodeSpec = NodeSpec {
             "Sweeps: draft 1 on the finest grid and 4 on coarser ones, along 8 directions; fast 1 and 8; default 4 and 16; thick: \
              V-cycles, for media that are both deep and white; reference: until the field changes by less than 1e-5.",
         ),
-        ParamSpec::int_choice("directions", &DIRECTIONS).doc("Directions of the lines; 0 lets the quality choose."),
+        ParamSpec::int_choice("directions", &DIRECTIONS).doc("Directions of the lines; 0 lets the quality and the scene choose."),
         ParamSpec::int("sweeps", 0).between(0.0, 10000.0).soft(0.0, 64.0).doc("Sweeps on the finest grid; 0 lets the quality choose. Not for thick."),
         ParamSpec::int("coarse_sweeps", 0).between(0.0, 10000.0).soft(0.0, 64.0).doc("Sweeps on each coarser grid; 0 lets the quality choose. Not for thick."),
     ],
@@ -83,61 +90,79 @@ enum Kind {
     Reference,
 }
 
-fn effort(run: &Run) -> Result<Effort, NodeError> {
-    let (sweeps, coarse_sweeps, directions, kind) = match run.params.text("quality") {
-        "draft" => (1, 4, 8, Kind::Cascade),
-        "fast" => (1, 8, 14, Kind::Cascade),
-        "thick" => (4, 16, 14, Kind::Thick),
-        "reference" => (4, 16, 14, Kind::Reference),
-        _ => (4, 16, 14, Kind::Cascade),
-    };
-    let or = |name: &str, chosen: usize| match run.params.i64(name) {
-        0 => chosen,
-        asked => asked as usize,
-    };
-    let given = ["sweeps", "coarse_sweeps"].into_iter().find(|name| run.params.i64(name) > 0);
-    if let (Kind::Thick, Some(name)) = (kind, given) {
-        return Err(NodeError::new(format!(
-            "{name} = {}: quality thick has V-cycles of its own, leave it at 0 or choose another quality",
-            run.params.i64(name)
-        )));
+impl Effort {
+    /// Sweeps of a cascade's grid, of so many with the finest first.
+    fn sweeps_on(&self, idx: usize, n_grids: usize) -> usize {
+        if idx > 0 || n_grids == 1 { self.coarse_sweeps } else { self.sweeps }
     }
-    let lines = LineSet::from_count(or("directions", directions)).expect("a choice of the parameter");
-    Ok(Effort {
-        lines,
-        sweeps: or("sweeps", sweeps),
-        coarse_sweeps: or("coarse_sweeps", coarse_sweeps),
-        kind,
-    })
+
+    /// Enough for what only lights surfaces: that need not be as good as what is seen, and of a cascade all
+    /// grids but the finest are solved.
+    fn rough(self) -> Self {
+        match self.kind {
+            Kind::Cascade => Self { sweeps: 0, coarse_sweeps: self.coarse_sweeps.min(8), ..self },
+            _ => self,
+        }
+    }
 }
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
-    let effort = effort(run)?;
     let beams = beams_through(run, medium)?;
-    let meshes = run.inputs.many::<Mesh>("surfaces");
-    let is_grey = |mesh: &&Mesh| mesh.reflectance.iter().all(|share| *share == mesh.reflectance[0]);
-    let channels = match Channels::of(medium, &beams) {
-        channels if meshes.iter().all(is_grey) => channels,
-        _ => Channels::RGB,
+    let Plan { effort, channels, scattering, has_lobes, report } = plan::plan(run)?;
+    run.tell(report);
+    let residual = match scattering {
+        Scattering::Solved => solve(run, medium, &beams, effort, channels, has_lobes)?,
+        Scattering::Even(phi) => even(run, medium, channels, phi)?,
+        Scattering::None => Residual { is_dark: true, ..even(run, medium, channels, [0.0; 3])? },
     };
-    let problem = level::Problem::new(medium, &channels, beams.ambient, effort.lines);
-    let surfaces = Surfaces::new(run.gpu, &medium.lattice, &meshes)?;
-    if !surfaces.is_empty() && !beams.fields.is_empty() {
-        return Err(NodeError::new(
-            "surfaces are lit by beams, and principal_propagation's scheme literal has none: choose another scheme, \
-             or disconnect surfaces",
-        ));
-    }
-    let residual = if surfaces.is_empty() {
-        let sources = sources::sources(run, medium, &beams, &channels, &problem)?;
-        solver::solve(run, medium, &sources, &problem, effort, channels, level::BATCH_BYTES)?
-    } else {
-        bounce::solve(run, medium, &beams, &surfaces, &problem, effort, channels)?
-    };
-    let residual = beams.fields.iter().try_fold(residual, |sum, field| fields::add(run, sum, field))?;
     let bytes = residual.moments.bytes() + residual.surface_light.as_ref().map_or(0, |light| light.bytes());
     Ok(vec![Value::new(PortType::Residual, bytes, residual)])
+}
+
+fn foretell(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    check_media(run, medium)?;
+    let Plan { channels, scattering, report, .. } = plan::plan(run)?;
+    run.tell(report);
+    let is_dark = scattering == Scattering::None;
+    let residual = Residual { is_dark, ..even(run, medium, channels, [0.0; 3])? };
+    Ok(vec![Value::new(PortType::Residual, 0, residual)])
+}
+
+/// The residual of the same fluence everywhere.
+fn even(run: &Run, medium: &Medium, channels: Channels, phi: [f64; 3]) -> Result<Residual, NodeError> {
+    let texels: Vec<[f32; 4]> =
+        channels.project(phi)[..channels.count].iter().map(|phi| [*phi as f32, 0.0, 0.0, 0.0]).collect();
+    let dims = [1, 1, channels.count];
+    let moments = run.gpu.texture3_from("moments", dims, Format::Rgba32Float, &texels, "")?;
+    Ok(Residual {
+        moments: Arc::new(moments),
+        is_dark: false,
+        lattice: medium.lattice.clone(),
+        channels,
+        balance: [1.0; 3],
+        surface_light: None,
+    })
+}
+
+fn solve(
+    run: &Run,
+    medium: &Medium,
+    beams: &Beams,
+    effort: Effort,
+    channels: Channels,
+    has_lobes: bool,
+) -> Result<Residual, NodeError> {
+    let problem = level::Problem::new(medium, &channels, beams.ambient, effort.lines, has_lobes);
+    let surfaces = Surfaces::new(run.gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
+    let residual = if surfaces.is_empty() {
+        let sources = sources::sources(run, medium, beams, &channels, &problem)?;
+        solver::solve(run, medium, &sources, &problem, effort, channels, level::BATCH_BYTES)?
+    } else {
+        bounce::solve(run, medium, beams, &surfaces, &problem, effort, channels)?
+    };
+    beams.fields.iter().try_fold(residual, |sum, field| fields::add(run, sum, field))
 }
 
 #[cfg(test)]

@@ -44,10 +44,9 @@ pub(super) fn solve(
         if let Some(coarser) = levels.get(idx + 1) {
             prolong(run, coarser, &levels[idx])?;
         }
-        let coarse = idx > 0 || levels.len() == 1;
         match effort.kind {
             Kind::Thick => thick::solve_level(run, &levels[idx..], idx == 0)?,
-            _ => sweep(run, &levels[idx], if coarse { effort.coarse_sweeps } else { effort.sweeps }, true)?,
+            _ => sweep(run, &levels[idx], effort.sweeps_on(idx, levels.len()), true)?,
         }
     }
     if effort.kind == Kind::Reference {
@@ -58,11 +57,18 @@ pub(super) fn solve(
     let balance = std::array::from_fn(|c| if c < problem.n_channels { f64::from(factors[c]) } else { 1.0 });
     Ok(Residual {
         moments: Arc::new(finest.moments),
+        is_dark: false,
         lattice: medium.lattice.clone(),
         channels,
         balance,
         surface_light: None,
     })
+}
+
+/// Cells of all grids, finest first.
+pub(super) fn grids(dims: [usize; 3]) -> Vec<[usize; 3]> {
+    let is_halved = |dims: &[usize; 3]| dims.iter().any(|n| *n > COARSEST) && dims.iter().all(|n| n % 2 == 0);
+    std::iter::successors(Some(dims), |dims| is_halved(dims).then(|| dims.map(|n| n / 2))).collect()
 }
 
 /// All grids, finest first.
@@ -78,13 +84,7 @@ fn levels(
     let fields = [&*medium.sigma_t, &sources.field];
     let mut levels = vec![Level::new(gpu, problem, scratch, cell_m, fields, &sources.sums)?];
     let mut coarser: Option<[Texture; 2]> = None;
-    loop {
-        let dims = levels[levels.len() - 1].dims;
-        let longest = dims.into_iter().max().unwrap_or(0);
-        if longest <= COARSEST || dims.iter().any(|n| n % 2 == 1) {
-            return Ok(levels);
-        }
-        let half = dims.map(|n| n / 2);
+    for half in grids(medium.lattice.dims).into_iter().skip(1) {
         let [sigma_t, field] = match &coarser {
             Some([sigma_t, field]) => [sigma_t, field],
             None => fields,
@@ -97,6 +97,7 @@ fn levels(
         levels.push(Level::new(gpu, problem, scratch, cell_m, [&next[0], &next[1]], &sources.sums)?);
         coarser = Some(next);
     }
+    Ok(levels)
 }
 
 /// So many sweeps of a level.

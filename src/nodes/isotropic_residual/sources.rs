@@ -1,4 +1,8 @@
 //! The sources of the residual: what beams lose to scattering in each cell, and emission (DESIGN 6.3).
+//!
+//! Limits: what cells of parallel light get is not exactly what its rays lose, since rays see the trilinear
+//! extinction and cells are even: 0.3 % is missing at most in the scenes of the truth set, 6 % in a homogeneous
+//! block of 0.7 optical depths a cell at g 0, half in one of 5 (`tests/power.rs`).
 
 use super::super::Run;
 use super::level::{LevelParams, Problem, REMEDY};
@@ -38,10 +42,11 @@ pub(super) fn sources(
     let layers = problem.layers(dims);
     let field = gpu.texture3("sources", layers, Format::Rgba32Float, REMEDY)?;
     let list = beams.list(gpu, channels)?;
+    let depths = beams.depths(gpu)?;
     let params = SourceParams {
         level,
-        n_beams: beams.beams.len() as u32,
-        packs_per_column: beams.tau.packs_per_column as u32,
+        n_beams: if beams.tau.is_some() { beams.beams.len() as u32 } else { 0 },
+        packs_per_column: depths.tau.packs_per_column as u32,
         pad_0: 0,
         pad_1: 0,
     };
@@ -49,11 +54,11 @@ pub(super) fn sources(
     let glow = Emission::or_none(medium.emission.as_ref(), gpu)?;
     let inputs = [
         Bind::Texture(&medium.sigma_t),
-        Bind::Texture(&beams.star().texture),
+        Bind::Texture(&depths.star.texture),
         Bind::Buffer(&list),
         Bind::Texture(&glow.cells),
     ];
-    let [pack, format] = beams.tau.choices();
+    let [pack, format] = depths.tau.choices();
     let choices = [pack, format, ("emission", medium.emission.is_some().to_string())];
     let stage = gpu.stage("isotropic_residual/sources", &choices)?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);

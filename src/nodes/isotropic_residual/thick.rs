@@ -14,12 +14,38 @@ use crate::graph::NodeError;
 /// Sweeps that solve the coarsest level.
 const COARSEST_SWEEPS: usize = 60;
 
+/// How often each of so many levels is swept, finest first.
+pub(super) fn sweeps(n_levels: usize) -> Vec<usize> {
+    let mut counts = vec![0; n_levels];
+    let last = n_levels - 1;
+    for level in 0..n_levels {
+        if level == last {
+            counts[level] += COARSEST_SWEEPS;
+            continue;
+        }
+        for _ in 0..cycles(level == 0) {
+            for below in level..last {
+                counts[below] += 2;
+                counts[below + 1] += 1;
+            }
+            counts[last] += COARSEST_SWEEPS;
+        }
+        counts[level] += 1;
+    }
+    counts
+}
+
+/// V-cycles that solve a level.
+fn cycles(finest: bool) -> usize {
+    if finest { 2 } else { 1 }
+}
+
 /// Solves `levels[0]`, which has been started from `levels[1]`.
 pub(super) fn solve_level(run: &Run, levels: &[Level], finest: bool) -> Result<(), NodeError> {
     if levels.len() == 1 {
         return sweep(run, &levels[0], COARSEST_SWEEPS, true);
     }
-    for _ in 0..if finest { 2 } else { 1 } {
+    for _ in 0..cycles(finest) {
         cycle(run, levels, None)?;
     }
     sweep(run, &levels[0], 1, true)

@@ -15,7 +15,7 @@ use rayon::prelude::*;
 use super::region::{Excess, Region, ordinates};
 use super::summed_area::{Rect, SummedArea};
 use crate::light::Ordinate;
-use crate::light::environment::{Environment, Map};
+use crate::light::environment::Map;
 use crate::light::importance::Importance;
 use crate::optics::spectrum::luminance;
 
@@ -25,19 +25,13 @@ const IMPORTANCE_COLUMNS: usize = 512;
 /// A rectangle whose weight is under this share of the map's may be black: it is looked at.
 const MAY_BE_BLACK: f64 = 1e-12;
 
-/// At most `count` ordinates of what an environment has beyond its minimum, and the radiance of what has no
-/// direction.
+/// At most `count` ordinates of a map, and the radiance of what has no direction.
 pub(super) fn split(
-    environment: &Environment,
+    excess: &Excess,
     count: usize,
     importance: Option<&Importance>,
 ) -> (Vec<Ordinate>, [f64; 3]) {
-    let Environment::Map(map) = environment else {
-        return Default::default();
-    };
-    let excess = Excess::new(map, environment.minimum());
-    let regions: Vec<Region> =
-        cut(&excess, count, importance).iter().map(|rect| sum(&excess, rect)).collect();
+    let regions: Vec<Region> = cut(excess, count, importance).iter().map(|rect| sum(excess, rect)).collect();
     ordinates(&regions)
 }
 

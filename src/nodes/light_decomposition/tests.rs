@@ -1,12 +1,14 @@
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::DVec3;
 use serde_json::json;
 
+use crate::camera::Camera;
 use crate::graph::{PortType, Value};
 use crate::light::environment::{Environment, Map};
 use crate::light::{Light, Ordinates};
-use crate::nodes::testing::{gpu, output, run};
+use crate::nodes::testing::{Filling, Scene, gpu, output, run, with_shares};
 
 fn sun(angular_diameter_deg: f64) -> Value {
     let direction = DVec3::new(0.6, 0.0, -0.8);
@@ -39,6 +41,34 @@ fn point_lights_are_sent_elsewhere() {
     let light = Value::new(PortType::Light, 0, light);
     let error = run(gpu, "light_decomposition", json!({}), &[("lights", &light)]).unwrap_err();
     assert!(error.to_string().contains("wire it to spherical_propagation.lights"), "{error}");
+}
+
+#[test]
+fn what_fades_keeps_light_without_a_direction() {
+    let Some(gpu) = gpu() else { return };
+    let medium = Scene::new([5, 5, 5], Filling::Homogeneous, 1.0).medium(gpu);
+    let importance = |x: f64| {
+        let position = DVec3::new(x, 0.0, 5.0);
+        let view =
+            Camera { position, look_at: DVec3::ZERO, up: DVec3::Y, fov_y_deg: 40.0, width: 8, height: 8 };
+        let view = Value::new(PortType::Camera, 0, view);
+        output(gpu, "importance_propagation", json!({}), &[("medium", &medium), ("camera", &view)])
+    };
+    // A belt about the equator, in one piece: its mean direction is none.
+    let texels = (0..32 * 16).map(|idx| [f32::from(u8::from((4..12).contains(&(idx / 32)))); 3]).collect();
+    let belt =
+        Map { width: 32, height: 16, texels: Arc::new(texels), scale: 2.0, rotate_y: 0.0, stack: None };
+    let fluence = (4..12).map(|row| 2.0 * 32.0 * belt.solid_angle(row)).sum::<f64>();
+    let belt = Value::new(PortType::Environment, 0, Environment::Map(belt));
+    let (one, other) = (importance(0.0), importance(3.0));
+    let inputs = [("environment", &belt, 1.0), ("importance", &one, 0.25), ("importance", &other, 0.75)];
+    let light = with_shares(gpu, "light_decomposition", json!({ "count": 1 }), &inputs, |run| {
+        super::run(run).unwrap().remove(0)
+    });
+    let light: &Ordinates = light.get();
+    assert!(light.ordinates.is_empty());
+    // A sum of 256 texels.
+    assert!((4.0 * PI * light.ambient[1] / fluence - 1.0).abs() < 1e-12, "{light:?}");
 }
 
 #[test]

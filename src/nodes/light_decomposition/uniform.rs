@@ -10,18 +10,13 @@ use rayon::prelude::*;
 
 use super::region::{Excess, Region, ordinates};
 use crate::light::Ordinate;
-use crate::light::environment::Environment;
 
-/// The ordinates of what an environment has beyond its minimum, and the radiance of what has no direction.
-pub(super) fn split(environment: &Environment, count: usize) -> (Vec<Ordinate>, [f64; 3]) {
-    let Environment::Map(map) = environment else {
-        return Default::default();
-    };
-    let excess = Excess::new(map, environment.minimum());
+/// The ordinates of a map, and the radiance of what has no direction.
+pub(super) fn split(excess: &Excess, count: usize) -> (Vec<Ordinate>, [f64; 3]) {
     let partition = Partition::new(count);
-    let sums = (0..map.height)
+    let sums = (0..excess.map.height)
         .into_par_iter()
-        .map(|row| sum_row(&excess, row, &partition))
+        .map(|row| sum_row(excess, row, &partition))
         .collect::<Vec<_>>()
         .into_iter()
         // In order of the rows, so that the sums are the same on every run.
@@ -89,7 +84,13 @@ mod tests {
     use std::sync::Arc;
 
     use super::*;
-    use crate::light::environment::Map;
+    use crate::light::environment::{Environment, Map};
+
+    /// Of what an environment has beyond its minimum.
+    fn split(environment: &Environment, count: usize) -> (Vec<Ordinate>, [f64; 3]) {
+        let Environment::Map(map) = environment else { panic!("a constant is not split") };
+        super::split(&Excess::new(map, environment.minimum()), count)
+    }
 
     fn map(texel: impl Fn(usize, usize) -> [f32; 3]) -> Environment {
         let (width, height) = (256, 128);
@@ -152,7 +153,6 @@ mod tests {
         assert_eq!(ordinates.len(), 1);
         assert!(ordinates[0].a0 == 1.0 && ordinates[0].region > Some(1.0 - 1e-12));
         assert_eq!(split(&map(|_, _| [0.0; 3]), 32), (vec![], [0.0; 3]));
-        assert_eq!(split(&Environment::Constant([1.0; 3]), 32), (vec![], [0.0; 3]));
     }
 
     #[test]

@@ -2,16 +2,16 @@
 
 use std::path::PathBuf;
 
-use super::{NodeKind, Run, transform};
-use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, Params, PortSpec, PortType, Value};
-use crate::volume::sequence::Sequence;
+use super::{NodeKind, Rules, Run, transform};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, Params, PortSpec, PortType, Timing, Value};
+use crate::volume::sequence::{Playback, Sequence};
 use crate::volume::{Volume, vdb};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "load_vdb",
-    version: 1,
+    version: 2,
     category: Category::Volume,
     purpose: "Reads an OpenVDB file, or one frame of a numbered sequence of them.",
     doc: "`path` is a file, a pattern such as smoke_####.vdb, or a folder that holds one numbered sequence. \
@@ -20,12 +20,19 @@ static SPEC: NodeSpec = NodeSpec {
     outputs: &[PortSpec::new("volume", PortType::Volume, "all grids of the file")],
     params: &[
         ParamSpec::path("path").doc("A .vdb file, a pattern with ####, or a folder."),
-        ParamSpec::int("frame", 0).or_null().doc("Frame of the scene; null is the sequence's first."),
+        ParamSpec::int("frame", 0)
+            .or_null()
+            .timed(Timing::Frame)
+            .doc("Frame of the scene; null is the sequence's first. Set by render --frames."),
         ParamSpec::int("first_frame", 0)
             .or_null()
             .doc("The scene's frame at which the sequence begins; null is its own first number."),
         ParamSpec::int("offset", 0).soft(-100.0, 100.0).doc("Added to the frame."),
         ParamSpec::bool("loop", false).doc("After its last frame the sequence begins again."),
+        ParamSpec::bool("hold", false).timed(Timing::Aside).doc(
+            "A frame that is not there is the one before it that is, else the first. Where light_decomposition looks \
+             at other frames than the one that is rendered, it is so without being said.",
+        ),
         transform::PARAM,
     ],
 };
@@ -35,7 +42,15 @@ fn file(params: &Params) -> Result<PathBuf, NodeError> {
     let whole = |name: &str| params.is_set(name).then(|| params.i64(name));
     Sequence::find(params.path("path"))
         .and_then(|sequence| {
-            sequence.file(whole("frame"), whole("first_frame"), params.i64("offset"), params.bool("loop"))
+            sequence.file(
+                whole("frame"),
+                Playback {
+                    first_frame: whole("first_frame"),
+                    offset: params.i64("offset"),
+                    loops: params.bool("loop"),
+                    holds: params.bool("hold"),
+                },
+            )
         })
         .map_err(NodeError::new)
 }

@@ -14,13 +14,12 @@ use super::super::Run;
 use super::{REMEDY, samples_along_cell};
 use crate::gpu::{Bind, Format, Texture};
 use crate::graph::{NodeError, Params};
+use crate::light::BRIGHTEST;
 use crate::mirror;
 use crate::optics::blackbody::{KNEE, TABLE_SIZE, blackbody_rgb, blackbody_table};
 use crate::volume::{Dense, Lattice, Volume};
 use crate::wire::{Emission, Heat};
 
-/// The brightest that is not refused [W/(m³ sr)].
-const BRIGHTEST: f64 = 1e28;
 /// The hottest that is not refused, and the coldest below 0 [K].
 const HOTTEST: f64 = 1e30;
 /// Points along each axis of a cell whose mean it holds (DESIGN 6.3).

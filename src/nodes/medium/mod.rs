@@ -4,17 +4,18 @@ use std::sync::Arc;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::{NodeKind, Run, no_files};
+use super::{NodeKind, Rules, Run, no_files};
 use crate::gpu::{Bind, Format, Texture};
-use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Report, Value};
 use crate::mirror;
+use crate::planner::{self, Split};
 use crate::volume::{Dense, Fineness, Lattice, Volume, uniform_scale};
 use crate::wire::{Emission, Homogeneous, Medium, occupancy};
 use emission::Glow;
 
 mod emission;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Cheap };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "medium",
@@ -80,8 +81,6 @@ const EMISSION: &[ParamSpec] = &[
     ParamSpec::text("flame", "flame").doc("Name of the grid that says how much glows where."),
 ];
 
-/// Optical depth of a cell over which it is split (DESIGN 6.3: 12.9 % error at 1.4, 2.9 % at 0.7).
-const THICK: f64 = 0.7;
 /// A cell takes one sample a voxel along each axis, up to this many: a thread then reads 2 million voxels,
 /// and drivers stop what runs for seconds.
 const MOST_SAMPLES: f64 = 64.0;
@@ -113,10 +112,13 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     }
     let glow = emission::read(run.params, volume)?;
     let (low, high) = occupied(&dense, glow.as_ref());
+    let max_resolution = run.params.i64("max_resolution") as usize;
+    let whole_m = Lattice::whole_cell_m(low, high, dense.world_from_index, max_resolution);
+    let facts = Split { sigma_t_max, whole_m, is_bounded: max_resolution > 0 };
+    let (wanted_cell_m, tell_split) = planner::split(facts, run.prune);
     let fineness = Fineness {
-        max_resolution: run.params.i64("max_resolution") as usize,
-        // Who bounds the resolution does not want it split again.
-        wanted_cell_m: if run.params.i64("max_resolution") > 0 { f64::INFINITY } else { THICK / sigma_t_max },
+        max_resolution,
+        wanted_cell_m,
         // The residual binds 16 bytes a cell at once.
         max_cells: (run.params.i64("max_cells") as usize).min(run.gpu.max_binding_bytes() as usize / 16),
         // The residual stacks three channels along z, and a beam's lines stand half a cell apart: of n cells
@@ -127,10 +129,18 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let sigma_t = resample(run, &dense, density_scale, &lattice)?;
     let emission = glow.map(|glow| glow.on(run, &lattice)).transpose()?;
     let blocks = occupancy(run.gpu, &sigma_t, emission.as_ref())?;
-    let bytes = sigma_t.bytes() + blocks.bytes() + emission.as_ref().map_or(0, Emission::bytes);
+    let bytes = sigma_t.bytes() + blocks.texture.bytes() + emission.as_ref().map_or(0, Emission::bytes);
+    // A flame ends where its voxels do; its smoke must end there too.
+    let shape = homogeneous(volume, &lattice).filter(|_| emission.is_none());
+    let (is_closed, tell_closed) = planner::closed_form(shape.is_some(), run.prune);
+    run.tell(Report {
+        decisions: vec![tell_split(lattice.cell_m), tell_closed],
+        cells: Some(lattice.dims),
+        ..Report::default()
+    });
     let medium = Medium {
-        // A flame ends where its voxels do; its smoke must end there too.
-        homogeneous: homogeneous(volume, &lattice).filter(|_| emission.is_none()),
+        homogeneous: shape.filter(|_| is_closed),
+        tau_max: density_scale * longest_way(&dense),
         emission,
         lattice,
         blocks: Arc::new(blocks),
@@ -140,6 +150,24 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         g: run.params.f64("g"),
     };
     Ok(vec![Value::new(PortType::Medium, bytes, medium)])
+}
+
+/// What no straight way through the voxels exceeds: it crosses the slices of one axis, of each at most √3 of
+/// its thickness, where nothing is larger than the slice's largest. A tenth more, because cells that are no
+/// whole part of a voxel sample it up to so much too densely.
+fn longest_way(dense: &Dense) -> f64 {
+    match uniform_scale(DMat3::from_mat4(dense.world_from_index)) {
+        Some(voxel_m) => 1.1 * 3f64.sqrt() * voxel_m * dense.slice_maxima().into_iter().fold(0.0, f64::max),
+        None => {
+            let largest = dense.values.iter().copied().fold(0.0, f32::max);
+            let reach = DVec3::from_array(dense.dims.map(|n| n as f64 + 1.0));
+            let linear = DMat3::from_mat4(dense.world_from_index);
+            let diagonal = (linear.x_axis * reach.x).length()
+                + (linear.y_axis * reach.y).length()
+                + (linear.z_axis * reach.z).length();
+            1.1 * diagonal * f64::from(largest)
+        }
+    }
 }
 
 /// First and last voxel that the medium reaches into, by matter or glow.

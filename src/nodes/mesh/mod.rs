@@ -2,11 +2,11 @@
 
 use std::path::PathBuf;
 
-use super::{NodeKind, Run, transform};
+use super::{NodeKind, Rules, Run, transform};
 use crate::geometry::{self, Mesh};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, Params, PortSpec, PortType, Value};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "mesh",

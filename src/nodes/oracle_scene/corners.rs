@@ -18,7 +18,7 @@ use crate::optics::transmittance::mean_transmittance;
 use crate::volume::field::Field;
 
 /// Depth of a corner that a surface hides from the light.
-pub const HIDDEN: f64 = 65504.0;
+pub const HIDDEN: f64 = half::f16::MAX.to_f64_const();
 
 /// Mean of e^{−k tau} over each cell, from tau at its corners: along the axis nearest to `direction`, then
 /// along the other two. Exact where tau is linear, so that cells get what the beam loses. Where corners are

@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::{NodeKind, Run, no_files};
+use super::{NodeKind, Rules, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
-use crate::light::Light;
+use crate::light::{BRIGHTEST, Light};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "point_light",
@@ -20,7 +20,7 @@ static SPEC: NodeSpec = NodeSpec {
         ParamSpec::vector("position", &[0.0, 2.0, 0.0]).unit("m").doc("Where it stands."),
         ParamSpec::rgb("intensity", [1.0; 3])
             .unit("W/sr")
-            .at_least(0.0)
+            .between(0.0, BRIGHTEST)
             .soft(0.0, 100.0)
             .doc("Power per solid angle, linear Rec. 709."),
     ],

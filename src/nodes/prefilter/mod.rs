@@ -13,17 +13,18 @@
 
 use std::sync::Arc;
 
-use super::{NodeKind, Run, no_files};
-use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
+use super::{NodeKind, Rules, Run, no_files};
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Report, Value};
 use crate::light::environment::{Environment, Map, Stack};
 use crate::light::{Ordinate, Ordinates, Window};
+use crate::planner;
 use crate::wire::Medium;
 
 mod fft;
 mod harmonics;
 mod kernel;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Cheap };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "prefilter",
@@ -57,8 +58,14 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         )));
     }
     let window = Window { inner_deg, outer_deg };
+    let (has_stack, decision) = planner::stack(medium.g, matches!(environment, Environment::Map(_)));
+    run.tell(Report { decisions: vec![decision], ..Report::default() });
     let stack = match environment {
-        Environment::Map(map) if medium.g > 0.0 => Some(stack(map, environment.minimum(), medium.g, window)),
+        Environment::Map(map) if has_stack => {
+            let (flows_in, _) = planner::constant_light(environment.minimum(), false, run.prune);
+            let ambient = if flows_in { environment.minimum() } else { [0.0; 3] };
+            Some(stack(map, ambient, medium.g, window))
+        }
         _ => None,
     };
     run.cancel.check()?;

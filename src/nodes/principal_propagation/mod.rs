@@ -1,10 +1,14 @@
 //! `principal_propagation`: parallel light through the medium (DESIGN 6.3).
 
-use super::{NodeKind, Run, no_files, shadow, walk};
+use super::{NodeKind, Rules, Run, no_files, shadow, walk};
+use std::sync::Arc;
+
 use crate::geometry::Mesh;
-use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
+use crate::gpu::Format;
+use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Report, StageWork, Value};
 use crate::light::Ordinates;
-use crate::wire::{Beam, Beams, Medium, Place, Surfaces};
+use crate::planner::{self, Depths};
+use crate::wire::{AtlasLayout, Beam, Beams, LightField, Medium, Place, Surfaces};
 
 mod aligned;
 mod literal;
@@ -13,7 +17,8 @@ pub(super) mod oracle;
 mod scan;
 pub(super) mod widening;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind =
+    NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Foretold(foretell) };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "principal_propagation",
@@ -45,22 +50,19 @@ static SPEC: NodeSpec = NodeSpec {
     ],
 };
 
-/// A scan costs as much as a walk of so many samples a corner (measured on 112 x 96 x 128 cells, where a
-/// walk of 77 takes 0.6 of the scan's time).
-const SAMPLES_OF_A_SCAN: f64 = 125.0;
+/// What is done with the light.
+struct Plan {
+    beams: Vec<Beam>,
+    /// Whether their depths are looked up at all.
+    is_carried: bool,
+    depths: Depths,
+    widens: bool,
+    report: Report,
+}
 
-fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+fn plan(run: &Run) -> Result<Plan, NodeError> {
     let medium: &Medium = run.inputs.one("medium");
     let light: &Ordinates = run.inputs.one("ordinates");
-    let widens = run.params.text("peak") == "widening";
-    if run.params.text("scheme") == "literal" {
-        if widens {
-            return Err(NodeError::new(
-                "peak widening is for beams, and scheme literal has none: choose auto, scan or walk, or peak straight",
-            ));
-        }
-        return literal_scheme(run, medium, light);
-    }
     let beams: Vec<Beam> = light
         .ordinates
         .iter()
@@ -71,54 +73,119 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             window: ordinate.window,
         })
         .collect();
-    let scans = match run.params.text("scheme") {
-        "scan" => true,
-        "walk" => false,
-        // The scan's lines stand half a cell apart: the device must hold twice the cells along an axis.
-        _ => {
-            let lines = 2 * medium.lattice.dims.into_iter().max().unwrap_or(0) + 3;
-            scan::samples_of_a_walk(medium, &beams) > SAMPLES_OF_A_SCAN
-                && lines <= run.gpu.max_texture_3d() as usize
+    let powers: Vec<[f64; 3]> = beams.iter().map(|beam| beam.power).collect();
+    let (is_carried, decision) = planner::beams(medium.albedo, &powers, run.prune);
+    let mut decisions = vec![decision];
+    // The scan's lines stand half a cell apart: the device must hold twice the cells along an axis.
+    let lines = 2 * medium.lattice.dims.into_iter().max().unwrap_or(0) + 3;
+    let samples = walk::samples(medium, &beams);
+    let (depths, decision) = planner::depths(
+        run.params.text("scheme"),
+        medium.homogeneous.is_some(),
+        samples,
+        lines <= run.gpu.max_texture_3d() as usize,
+    );
+    let asks_for_widening = run.params.text("peak") == "widening";
+    let mut widens = false;
+    let mut stages = Vec::new();
+    if is_carried {
+        decisions.extend([planner::one_depth(beams.len()), decision]);
+        if asks_for_widening {
+            let (has_peak, decision) = planner::forward_peak(medium.g, true);
+            widens = has_peak;
+            decisions.push(decision);
         }
+        match depths {
+            Depths::Walk => stages.push(walk::work(medium, &beams)),
+            Depths::Scan => stages.extend(scan::work(medium, beams.len())),
+        }
+        stages.extend(widens.then_some(StageWork {
+            stage: "widening",
+            runs: beams.len(),
+            moved_bytes: None,
+        }));
+        stages.extend(shadow::work(run, beams.len()));
+    }
+    let layout = AtlasLayout::new(run.gpu.max_texture_3d() as usize, &medium.lattice, beams.len());
+    let n_atlases = u64::from(is_carried) * (1 + u64::from(widens));
+    let report = Report {
+        decisions,
+        cells: Some(medium.lattice.dims),
+        bytes: Some(n_atlases * layout.bytes()),
+        stages,
+        ..Report::default()
     };
-    // A shape in closed form needs no samples at all.
-    let tau = if scans && medium.homogeneous.is_none() {
-        scan::scan(run, medium, &beams)?
-    } else {
-        walk::walk(run, medium, &beams)?
-    };
-    let peak = if widens && medium.g > 0.0 {
-        let surfaces = Surfaces::new(run.gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
-        Some(widening::widen(run, medium, &beams, &tau, &surfaces)?)
-    } else {
-        None
-    };
-    let has_shadows = shadow::cast(run, medium, &beams, &tau)?;
-    let bytes = tau.texture.bytes() + peak.as_ref().map_or(0, |peak| peak.texture.bytes());
-    Ok(vec![Value::new(
-        PortType::Beams,
-        bytes,
-        Beams {
-            beams,
-            tau,
-            ambient: light.ambient,
-            lattice: medium.lattice.clone(),
-            has_shadows,
-            peak,
-            fields: Vec::new(),
-        },
-    )])
+    Ok(Plan { beams, is_carried, depths, widens, report })
 }
 
-fn literal_scheme(run: &Run, medium: &Medium, light: &Ordinates) -> Result<Vec<Value>, NodeError> {
+fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    let light: &Ordinates = run.inputs.one("ordinates");
+    if is_literal(run)? {
+        return literal_scheme(run, medium, light);
+    }
+    let Plan { beams, is_carried, depths, widens, report } = plan(run)?;
+    run.tell(report);
+    let mut carried = Beams { ambient: light.ambient, ..Beams::new(&medium.lattice, beams) };
+    if is_carried {
+        let tau = match depths {
+            Depths::Scan => scan::scan(run, medium, &carried.beams)?,
+            Depths::Walk => walk::walk(run, medium, &carried.beams)?,
+        };
+        if widens {
+            let surfaces = Surfaces::new(run.gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
+            carried.peak = Some(widening::widen(run, medium, &carried.beams, &tau, &surfaces)?);
+        }
+        carried.has_shadows = shadow::cast(run, medium, &carried.beams, &tau)?;
+        carried.tau = Some(tau);
+    }
+    let atlases = [&carried.tau, &carried.peak].into_iter().flatten();
+    let bytes = atlases.map(|atlas| atlas.texture.bytes()).sum();
+    Ok(vec![Value::new(PortType::Beams, bytes, carried)])
+}
+
+fn foretell(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    let light: &Ordinates = run.inputs.one("ordinates");
+    let mut beams = Beams { ambient: light.ambient, ..Beams::new(&medium.lattice, Vec::new()) };
+    if is_literal(run)? {
+        let (channels, report) = literal::plan(run, medium, light);
+        run.tell(report);
+        let nothing = run.gpu.texture3("light foretold", [1; 3], Format::Rgba32Float, "")?;
+        beams.fields.push(LightField { moments: Arc::new(nothing), channels });
+    } else {
+        let plan = plan(run)?;
+        run.tell(plan.report);
+        beams.beams = plan.beams;
+        beams.has_shadows = plan.is_carried && shadow::is_cast(run);
+    }
+    Ok(vec![Value::new(PortType::Beams, 0, beams)])
+}
+
+/// Whether the scheme without beams is asked for.
+fn is_literal(run: &Run) -> Result<bool, NodeError> {
+    if run.params.text("scheme") != "literal" {
+        return Ok(false);
+    }
+    if run.params.text("peak") == "widening" {
+        return Err(NodeError::new(
+            "peak widening is for beams, and scheme literal has none: choose auto, scan or walk, or peak straight",
+        ));
+    }
     if !run.inputs.many::<Mesh>("surfaces").is_empty() {
         return Err(NodeError::new(
             "scheme literal knows no surfaces: choose auto, scan or walk, or disconnect surfaces",
         ));
     }
-    let field = literal::propagate(run, medium, light, run.params.i64("iterations") as usize)?;
+    Ok(true)
+}
+
+fn literal_scheme(run: &Run, medium: &Medium, light: &Ordinates) -> Result<Vec<Value>, NodeError> {
+    let (channels, report) = literal::plan(run, medium, light);
+    run.tell(report);
+    let field = literal::propagate(run, medium, light, channels, run.params.i64("iterations") as usize)?;
     let bytes = field.moments.bytes();
-    let none = Beams::none(run.gpu, &medium.lattice)?;
-    let beams = Beams { fields: vec![field], ambient: light.ambient, ..none };
+    let beams =
+        Beams { fields: vec![field], ambient: light.ambient, ..Beams::new(&medium.lattice, Vec::new()) };
     Ok(vec![Value::new(PortType::Beams, bytes, beams)])
 }

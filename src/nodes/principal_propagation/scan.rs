@@ -4,11 +4,9 @@
 //! nothing is blurred on the way; a corner then takes tau between the four lines around it. Its cost is four
 //! samples a cell and beam, whatever the way through the medium.
 
-use glam::DVec3;
-
 use super::super::Run;
 use crate::gpu::{Bind, Format, Sampler, Texture};
-use crate::graph::NodeError;
+use crate::graph::{NodeError, StageWork};
 use crate::mirror;
 use crate::wire::{Beam, Medium, Place, TauAtlas};
 
@@ -120,15 +118,15 @@ fn shear(medium: &Medium, beam: &Beam) -> Shear {
     }
 }
 
-/// Samples that a walk takes from a corner to the light: half of the way through the medium, the mean over
-/// the beams.
-pub(super) fn samples_of_a_walk(medium: &Medium, beams: &[Beam]) -> f64 {
-    let occupied = DVec3::from_array(medium.lattice.occupied.map(|n| n as f64));
-    let ways = beams.iter().filter_map(|beam| match beam.place {
-        Place::Parallel(direction) => {
-            Some((occupied / direction.abs().max(DVec3::splat(1e-9))).min_element())
-        }
-        Place::Point(_) => None,
-    });
-    0.5 * ways.sum::<f64>() / beams.len().max(1) as f64
+/// What it moves: of each corner and beam four lines, of which each takes a sample and writes a sum; and the
+/// sums around the corner.
+pub(super) fn work(medium: &Medium, n_beams: usize) -> [StageWork; 2] {
+    let corners: usize = medium.lattice.dims.iter().map(|n| n + 1).product();
+    [("principal_propagation/scan", 4 * 8), ("principal_propagation/gather", 4 * 4 + 4)].map(
+        |(stage, bytes)| StageWork {
+            stage,
+            runs: n_beams,
+            moved_bytes: Some((corners * n_beams * bytes) as u64),
+        },
+    )
 }

@@ -28,6 +28,9 @@ impl Pixel {
 /// Layers with three channels, in the order of [`Pixel::layers`].
 const NAMES: [&str; 6] = [BEAUTY, "single", "forward", "residual", "surface", "emission"];
 
+/// What a picture keeps of a pixel [bytes].
+pub(super) const BYTES_OF_A_PIXEL: usize = 4 * (3 * NAMES.len() + 2);
+
 /// A picture that grows by whole rows.
 pub(super) struct Growing {
     width: usize,

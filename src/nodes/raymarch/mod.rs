@@ -7,7 +7,7 @@
 use glam::DMat3;
 
 use self::backdrop::Backdrop;
-use super::{ELSEWHERE, NodeKind, Run, beams_through, no_files};
+use super::{ELSEWHERE, NodeKind, Rules, Run, beams_through, check_media, no_files};
 use crate::camera::Camera;
 use crate::geometry::Mesh;
 use crate::gpu::{Bind, Format, Gpu, GpuError, Texture};
@@ -17,15 +17,18 @@ use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::peak;
 use crate::wire::{
-    Beams, Channels, Emission, Heat, Medium, Place, Residual, ShapeTexel, SurfaceLight, Surfaces,
+    Beams, Channels, Depths, Emission, Heat, Medium, Place, Residual, ShapeTexel, SurfaceLight, Surfaces,
 };
+use plan::Plan;
 
 mod backdrop;
 mod layers;
 #[cfg(test)]
 pub(super) mod oracle;
+mod plan;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind =
+    NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Foretold(foretell) };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "raymarch",
@@ -37,25 +40,17 @@ static SPEC: NodeSpec = NodeSpec {
           itself), surface (light of meshes).",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what is seen"),
-        PortSpec::new(
-            "beams",
-            PortType::Beams,
-            "light from propagations; without it only residual and emission are seen",
-        )
-        .many()
-        .optional(),
-        PortSpec::new("residual", PortType::Residual, "multiple scattering; without it there is none")
-            .optional(),
+        PortSpec::new("beams", PortType::Beams, "light from propagations")
+            .many()
+            .optional("only residual and emission are seen"),
+        PortSpec::new("residual", PortType::Residual, "multiple scattering")
+            .optional("light that was scattered more than once is not seen, but for the forward peak"),
         PortSpec::new("camera", PortType::Camera, "the view"),
-        PortSpec::new(
-            "environment",
-            PortType::Environment,
-            "what stands behind the medium; without it, black",
-        )
-        .optional(),
+        PortSpec::new("environment", PortType::Environment, "what stands behind the medium")
+            .optional("it is black behind the medium"),
         PortSpec::new("surfaces", PortType::Surface, "meshes that are seen, lit by the beams")
             .many()
-            .optional(),
+            .optional("only the medium is seen"),
     ],
     outputs: &[PortSpec::new("image", PortType::Image, "radiance [W/(m2 sr)], linear Rec. 709, with layers")],
     params: &[
@@ -129,10 +124,12 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         ));
     }
     let backdrop = Backdrop::new(gpu, run.inputs.maybe("environment"), run.params.bool("background"))?;
-
-    let channels = common_channels(Channels::of(medium, &beams), residual);
+    let plan = plan::plan(run)?;
+    run.tell(plan.report.clone());
+    let channels = plan.channels;
+    let depths = beams.depths(gpu)?;
     let emission = Emission::or_none(medium.emission.as_ref(), gpu)?;
-    let params = params(run, medium, camera, &beams, residual, &backdrop, channels)?;
+    let params = params(run, medium, camera, (&beams, &depths), residual, &backdrop, channels)?;
     let list = beams.list(gpu, &channels)?;
     let dark = gpu.texture3("no residual", [1; 3], Format::Rgba32Float, "")?;
     let moments = residual.map_or(&dark, |residual| &residual.moments);
@@ -145,13 +142,13 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let inputs = [
         Bind::Texture(&medium.sigma_t),
         Bind::Sampler(&clamp),
-        Bind::Texture(&beams.tau.texture),
+        Bind::Texture(&depths.tau.texture),
         Bind::Buffer(&list),
         Bind::Texture(moments),
         Bind::Texture(&table),
         Bind::Texture(&backdrop.map),
         Bind::Sampler(&around),
-        Bind::Texture(&medium.blocks),
+        Bind::Texture(&medium.blocks.texture),
         Bind::Texture(&backdrop.stack),
         nodes,
         triangles,
@@ -160,10 +157,10 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         blackbodies,
         light,
         corners,
-        Bind::Texture(&beams.star().texture),
+        Bind::Texture(&depths.star.texture),
     ];
 
-    let stage = gpu.stage("raymarch", &choices(medium, &beams, residual, &backdrop, &surfaces, channels))?;
+    let stage = gpu.stage("raymarch", &choices(&plan, medium, &beams, residual, &backdrop, &surfaces))?;
     let row_bytes = size_of::<layers::Pixel>() * camera.width;
     let row_rays = camera.width * (params.n_sub * params.n_sub) as usize;
     let band = (BAND_RAYS / row_rays).clamp(1, camera.height);
@@ -189,52 +186,54 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
 
 /// What the shader is compiled for.
 fn choices(
+    plan: &Plan,
     medium: &Medium,
     beams: &Beams,
     residual: Option<&Residual>,
     backdrop: &Backdrop,
     surfaces: &Surfaces,
-    channels: Channels,
-) -> [(&'static str, String); 14] {
+) -> [(&'static str, String); 17] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
     let window = beams.beams.iter().any(|beam| beam.window.is_some());
     let gathered = residual.and_then(|residual| residual.surface_light.as_ref());
-    let [pack, _] = beams.tau.choices();
     let n_beams = match beams.beams.len() {
         n @ ..=4 => format!("{n}u"),
         _ => "params.n_beams".to_owned(),
     };
     [
-        ("channels", channels.count.to_string()),
+        ("channels", plan.channels.count.to_string()),
         ("voxels", medium.homogeneous.is_none().to_string()),
         ("points", points.to_string()),
-        ("peak", (medium.g > 0.0).to_string()),
+        ("peak", plan.has_peak.to_string()),
         ("window", window.to_string()),
-        ("residual", residual.is_some().to_string()),
+        ("residual", plan.has_residual.to_string()),
         ("stack", backdrop.has_stack.to_string()),
         ("surfaces", (!surfaces.is_empty()).to_string()),
         ("shadows", beams.has_shadows.to_string()),
         ("gathered", gathered.is_some().to_string()),
         ("widening", beams.peak.is_some().to_string()),
         ("emission", medium.emission.is_some().to_string()),
+        ("beams", plan.has_beams.to_string()),
+        ("lobes", plan.has_lobes.to_string()),
+        ("skips", plan.skips.to_string()),
         ("n_beams", n_beams),
-        pack,
+        ("pack", beams.pack().to_string()),
     ]
 }
 
-/// One channel only where the residual has one of the same color.
-fn common_channels(of_beams: Channels, residual: Option<&Residual>) -> Channels {
-    match residual {
-        Some(residual) if residual.channels != of_beams => Channels::RGB,
-        _ => of_beams,
-    }
+/// The report of a run; of the picture only that there will be one.
+fn foretell(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    check_media(run, medium)?;
+    run.tell(plan::plan(run)?.report);
+    Ok(vec![Value::unknown(PortType::Image)])
 }
 
 fn params(
     run: &Run,
     medium: &Medium,
     camera: &Camera,
-    beams: &Beams,
+    (beams, depths): (&Beams, &Depths),
     residual: Option<&Residual>,
     backdrop: &Backdrop,
     channels: Channels,
@@ -267,7 +266,7 @@ fn params(
         color: four(channels.color),
         dims: lattice.dims.map(|n| n as u32),
         n_beams: beams.beams.len() as u32,
-        packs_per_column: beams.tau.packs_per_column as u32,
+        packs_per_column: depths.tau.packs_per_column as u32,
         width: camera.width as u32,
         height: camera.height as u32,
         row: 0,

@@ -1,10 +1,10 @@
 //! `save_image`: writes a picture to a file.
 
-use super::{NodeKind, Run, no_files};
+use super::{NodeKind, Rules, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::image::{self, Image};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "save_image",

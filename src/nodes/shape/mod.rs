@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 
-use super::{NodeKind, Run, no_files, transform};
+use super::{NodeKind, Rules, Run, no_files, transform};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::volume::shapes::{self, Kind};
 use crate::volume::{Evenly, Volume};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "shape",

@@ -1,14 +1,16 @@
 //! `spherical_propagation`: point lights through the medium (DESIGN 6.3, 6.7).
 
-use super::{NodeKind, Run, no_files, shadow, walk};
-use crate::graph::{Category, NodeError, NodeSpec, PortSpec, PortType, Value};
+use super::{NodeKind, Rules, Run, no_files, shadow, walk};
+use crate::graph::{Category, NodeError, NodeSpec, PortSpec, PortType, Report, Value};
 use crate::light::Light;
-use crate::wire::{Beam, Beams, Medium, Place};
+use crate::planner;
+use crate::wire::{AtlasLayout, Beam, Beams, Medium, Place};
 
 #[cfg(test)]
 pub(super) mod oracle;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind =
+    NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Foretold(foretell) };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "spherical_propagation",
@@ -26,7 +28,8 @@ static SPEC: NodeSpec = NodeSpec {
     params: &[],
 };
 
-fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+/// The beams, whether their depths are looked up at all, and what there is to say.
+fn plan(run: &Run) -> Result<(Vec<Beam>, bool, Report), NodeError> {
     let medium: &Medium = run.inputs.one("medium");
     let index_from_world = medium.lattice.index_from_world();
     let beams = run
@@ -45,20 +48,43 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             )),
         })
         .collect::<Result<Vec<Beam>, NodeError>>()?;
-    let tau = walk::walk(run, medium, &beams)?;
-    let has_shadows = shadow::cast(run, medium, &beams, &tau)?;
-    let bytes = tau.texture.bytes();
-    Ok(vec![Value::new(
-        PortType::Beams,
-        bytes,
-        Beams {
-            beams,
-            tau,
-            ambient: [0.0; 3],
-            lattice: medium.lattice.clone(),
-            has_shadows,
-            peak: None,
-            fields: Vec::new(),
-        },
-    )])
+    let powers: Vec<[f64; 3]> = beams.iter().map(|beam| beam.power).collect();
+    let (is_carried, decision) = planner::beams(medium.albedo, &powers, run.prune);
+    let mut report = Report {
+        decisions: vec![decision],
+        cells: Some(medium.lattice.dims),
+        bytes: Some(0),
+        ..Report::default()
+    };
+    if is_carried {
+        report.decisions.push(planner::one_depth(beams.len()));
+        report.stages.push(walk::work(medium, &beams));
+        report.stages.extend(shadow::work(run, beams.len()));
+        let layout = AtlasLayout::new(run.gpu.max_texture_3d() as usize, &medium.lattice, beams.len());
+        report.bytes = Some(layout.bytes());
+    }
+    Ok((beams, is_carried, report))
+}
+
+fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    let (beams, is_carried, report) = plan(run)?;
+    run.tell(report);
+    let mut carried = Beams::new(&medium.lattice, beams);
+    if is_carried {
+        let tau = walk::walk(run, medium, &carried.beams)?;
+        carried.has_shadows = shadow::cast(run, medium, &carried.beams, &tau)?;
+        carried.tau = Some(tau);
+    }
+    let bytes = carried.tau.as_ref().map_or(0, |tau| tau.texture.bytes());
+    Ok(vec![Value::new(PortType::Beams, bytes, carried)])
+}
+
+fn foretell(run: &Run) -> Result<Vec<Value>, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    let (beams, is_carried, report) = plan(run)?;
+    run.tell(report);
+    let has_shadows = is_carried && shadow::is_cast(run);
+    let beams = Beams { has_shadows, ..Beams::new(&medium.lattice, beams) };
+    Ok(vec![Value::new(PortType::Beams, 0, beams)])
 }

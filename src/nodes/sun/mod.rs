@@ -2,11 +2,11 @@
 
 use glam::DVec3;
 
-use super::{NodeKind, Run, no_files};
+use super::{NodeKind, Rules, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
-use crate::light::Light;
+use crate::light::{BRIGHTEST, Light};
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "sun",
@@ -21,7 +21,7 @@ static SPEC: NodeSpec = NodeSpec {
             .doc("The way the light travels; need not be of unit length."),
         ParamSpec::rgb("irradiance", [3.0; 3])
             .unit("W/m2")
-            .at_least(0.0)
+            .between(0.0, BRIGHTEST)
             .soft(0.0, 20.0)
             .doc("On a plane across the light, linear Rec. 709."),
         ParamSpec::float("angular_diameter_deg", 0.0)

@@ -3,14 +3,14 @@
 //! The formulas and their sources stand in [`crate::image::tonemap`], which is also the reference on the
 //! CPU. Only the beauty is mapped; other layers stay radiance.
 
-use super::{NodeKind, Run, no_files};
+use super::{NodeKind, Rules, Run, no_files};
 use crate::gpu::Bind;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::image::tonemap::{ACES_FIT, ACES_IN, ACES_OUT, CEILING, HABLE, HABLE_GAIN, HABLE_WHITE};
 use crate::image::{BEAUTY, Image};
 use crate::mirror;
 
-pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run };
+pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
 static SPEC: NodeSpec = NodeSpec {
     id: "tone_map",

@@ -3,9 +3,9 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use serde_json::json;
 
-use super::{BounceParams, coarser};
+use super::{BounceParams, ROW, coarser};
 use crate::geometry::Mesh;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Shader, wgsl_constant};
 use crate::graph::{PortType, Value};
 use crate::nodes::testing::{
     Filling, Scene, assert_close, assert_layout, ball, gpu, mesh, output, point, states, sun,
@@ -120,6 +120,14 @@ fn cells_that_look_for_patches_are_few_enough() {
 #[test]
 fn layouts_are_those_of_the_shaders() {
     assert_layout::<BounceParams>("isotropic_residual/bounce.wgsl", "BounceParams", &[]);
+}
+
+#[test]
+fn rows_of_threads_are_as_long_in_the_shader() {
+    let choices = [("pack", "1"), ("narrow", "true"), ("directions", "16"), ("channels", "1")];
+    let choices = choices.map(|(name, value)| (name, value.to_owned()));
+    let shader = Shader::expand("isotropic_residual/surface_light.wgsl", &choices).unwrap();
+    assert_eq!(wgsl_constant(&shader, "ROW").unwrap(), [ROW as f64]);
 }
 
 mod seen;

@@ -2,7 +2,18 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 use super::*;
+use crate::light::environment::Environment;
 use crate::nodes::testing::Random;
+
+/// Of what an environment has beyond its minimum.
+fn split(
+    environment: &Environment,
+    count: usize,
+    importance: Option<&Importance>,
+) -> (Vec<Ordinate>, [f64; 3]) {
+    let Environment::Map(map) = environment else { panic!("a constant is not split") };
+    super::split(&Excess::new(map, environment.minimum()), count, importance)
+}
 
 fn map(width: usize, height: usize, texel: impl Fn(usize, usize) -> [f32; 3]) -> Environment {
     let texels = (0..width * height).map(|n| texel(n % width, n / width)).collect();
@@ -105,7 +116,6 @@ fn a_sun_does_not_stop_the_cut() {
 fn black_takes_no_ordinates() {
     assert_eq!(split(&map(64, 32, |_, _| [0.0; 3]), 32, None), (vec![], [0.0; 3]));
     assert_eq!(split(&map(64, 32, |_, _| [0.7; 3]), 32, None), (vec![], [0.0; 3]));
-    assert_eq!(split(&Environment::Constant([1.0; 3]), 32, None), (vec![], [0.0; 3]));
     let hot = map(64, 32, |x, y| [0.0, if (x, y) == (10, 20) { 1e5 } else { 0.0 }, 0.0]);
     for count in [1, 2, 32] {
         let ordinates = assert_kept("hot", &hot, count, None);

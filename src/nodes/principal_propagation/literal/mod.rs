@@ -24,9 +24,10 @@ use std::sync::Arc;
 use super::super::Run;
 use super::aligned::{Aligned, AlignedTexel};
 use crate::gpu::{Bind, Format, Texture};
-use crate::graph::NodeError;
+use crate::graph::{NodeError, Report, StageWork};
 use crate::light::Ordinates;
 use crate::mirror;
+use crate::planner::{self, Colors};
 use crate::wire::{Channels, LightField, Medium};
 
 #[cfg(test)]
@@ -67,6 +68,21 @@ struct Cells {
     flux: Texture,
 }
 
+/// The channels that it solves, and what there is to say.
+pub(super) fn plan(run: &Run, medium: &Medium, light: &Ordinates) -> (Channels, Report) {
+    let lights = light.ordinates.iter().map(|ordinate| ordinate.irradiance).collect();
+    let colors = Colors { albedo: medium.albedo, lights, ..Colors::default() };
+    let (channels, decision) = planner::channels(&colors, run.prune);
+    let report = Report {
+        decisions: vec![decision],
+        cells: Some(medium.lattice.dims),
+        channels: Some(channels.count),
+        stages: vec![StageWork { stage: "literal", runs: light.ordinates.len(), moved_bytes: None }],
+        ..Report::default()
+    };
+    (channels, report)
+}
+
 /// The light of all ordinates after so many iterations; 0: as many as the grid of each is long.
 ///
 /// # Errors
@@ -75,12 +91,13 @@ pub(super) fn propagate(
     run: &Run,
     medium: &Medium,
     light: &Ordinates,
+    channels: Channels,
     iterations: usize,
 ) -> Result<LightField, NodeError> {
     let gpu = run.gpu;
-    let channels = Channels::of_powers(medium, light.ordinates.iter().map(|ordinate| ordinate.irradiance));
     // Channels that scatter alike share a solution.
-    let n_albedos = if medium.is_grey() { 1 } else { 3 };
+    let is_grey = medium.albedo.iter().all(|albedo| *albedo == medium.albedo[0]);
+    let n_albedos = if is_grey { 1 } else { 3 };
     let dims = medium.lattice.dims;
     let layers = [dims[0], dims[1], dims[2] * channels.count];
     let field = || gpu.texture3("light of the literal scheme", layers, Format::Rgba32Float, REMEDY);

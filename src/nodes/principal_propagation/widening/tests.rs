@@ -10,7 +10,7 @@ use crate::graph::{PortType, Value};
 use crate::light::{Ordinate, Ordinates};
 use crate::nodes::oracle_scene::corners::HIDDEN;
 use crate::nodes::testing::{
-    Filling, Scene, assert_close, assert_layout, filtered, flat, gpu, output, run, states, taus,
+    Filling, Scene, assert_close, assert_layout, filtered, flat, full_output, gpu, output, run, states, taus,
 };
 use crate::volume::field::Field;
 use crate::wire::Beams;
@@ -35,12 +35,12 @@ fn widened(gpu: &Gpu, scene: &Scene, medium: &Value, directions: &[DVec3], walls
     let ordinates = ordinates(scene, directions);
     let mut inputs = vec![("medium", medium), ("ordinates", &ordinates)];
     inputs.extend(walls.iter().map(|wall| ("surfaces", wall)));
-    output(gpu, "principal_propagation", json!({ "peak": "widening" }), &inputs)
+    full_output(gpu, "principal_propagation", json!({ "peak": "widening" }), &inputs)
 }
 
 /// The depths of E* as a field of their own.
 fn star_depths(gpu: &Gpu, beams: &Beams) -> Vec<Field<f64>> {
-    taus(gpu, &Beams { tau: beams.star().clone(), ..beams.clone() })
+    taus(gpu, &Beams { tau: beams.peak.clone(), ..beams.clone() })
 }
 
 /// The oracle's E* at the corners, from the straight beam's depths without shadows.
@@ -156,7 +156,7 @@ fn the_residual_takes_its_light() {
         flat(&states(gpu, &output(gpu, "isotropic_residual", json!({ "quality": "fast" }), &inputs))[0])
     };
     let as_peak = residual(beams.clone());
-    let as_tau = residual(Beams { tau: beams.star().clone(), peak: None, ..beams.clone() });
+    let as_tau = residual(Beams { tau: beams.peak.clone(), peak: None, ..beams.clone() });
     let straight = residual(Beams { peak: None, ..beams.clone() });
     assert_eq!(as_peak, as_tau);
     assert_ne!(as_peak, straight);

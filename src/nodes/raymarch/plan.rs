@@ -1,0 +1,176 @@
+//! What a march does and what it leaves out, by the rules of `planner`; and what it moves.
+
+use glam::DVec3;
+
+use super::super::Run;
+use super::layers::Pixel;
+use crate::camera::Camera;
+use crate::graph::{NodeError, Report, StageWork};
+use crate::optics::delta::DeltaScaled;
+use crate::planner::{self, Colors};
+use crate::wire::{Beam, Beams, Channels, Medium, Place, Residual};
+
+/// What is done.
+pub(super) struct Plan {
+    pub(super) channels: Channels,
+    /// Whether light of beams is looked up.
+    pub(super) has_beams: bool,
+    pub(super) has_peak: bool,
+    pub(super) has_residual: bool,
+    /// Whether lobes have a direction.
+    pub(super) has_lobes: bool,
+    /// Whether empty blocks are passed in one step.
+    pub(super) skips: bool,
+    pub(super) report: Report,
+}
+
+/// Decides from what the inputs say of themselves, without their fields.
+///
+/// # Errors
+/// A camera that looks nowhere.
+pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
+    let medium: &Medium = run.inputs.one("medium");
+    let camera: &Camera = run.inputs.one("camera");
+    let residual = run.inputs.maybe::<Residual>("residual");
+    let parts = run.inputs.many::<Beams>("beams");
+    let beams: Vec<Beam> = parts.iter().flat_map(|part| part.beams.iter().copied()).collect();
+    let powers: Vec<[f64; 3]> = beams.iter().map(|beam| beam.power).collect();
+    let fields = || parts.iter().flat_map(|part| &part.fields).map(|field| field.channels);
+    let ambient = parts.iter().map(|part| part.ambient);
+
+    let (has_beams, of_beams) = planner::beams(medium.albedo, &powers, run.prune);
+    let (has_peak, of_peak) = planner::forward_peak(medium.g, run.prune);
+    let (has_residual, of_residual) =
+        planner::residual(residual.is_some(), residual.is_some_and(|residual| residual.is_dark));
+    let (has_lobes, of_lobes) = planner::lobes(medium.g, run.prune);
+    // What beams carry is seen in the medium, or on surfaces.
+    let has_surfaces = !run.inputs.values("surfaces").is_empty();
+    let seen = if has_beams || has_surfaces { &powers[..] } else { &[] };
+    let colors = Colors {
+        albedo: medium.albedo,
+        glows: medium.emission.is_some(),
+        lights: fields().map(|field| field.color).chain(seen.iter().copied()).chain(ambient).collect(),
+        reflectances: Vec::new(),
+        has_rgb_fields: fields().any(|field| field.count == 3),
+    };
+    let (channels, of_channels) = planner::channels(&colors, run.prune);
+    let (channels, of_channels) = match residual.filter(|_| has_residual) {
+        // One channel only where the residual has one of the same color.
+        Some(residual) if residual.channels != channels => {
+            (Channels::RGB, planner::three_channels("the residual has others", &colors))
+        }
+        _ => (channels, of_channels),
+    };
+    let blocks = &medium.blocks;
+    let (skips, of_space) = planner::empty_space(blocks.n_filled(), blocks.largest.len(), run.prune);
+    let mut decisions = vec![of_channels, of_beams];
+    decisions.extend(has_beams.then_some(of_peak));
+    decisions.push(of_residual);
+    decisions.extend(has_residual.then_some(of_lobes));
+    decisions.extend(medium.homogeneous.is_none().then_some(of_space));
+
+    let mut plan = Plan {
+        channels,
+        has_beams,
+        has_peak: has_beams && has_peak,
+        has_residual,
+        has_lobes,
+        skips,
+        report: Report::default(),
+    };
+    let n_sub = (run.params.i64("samples") as f64).sqrt().ceil();
+    let n_pixels = camera.width * camera.height;
+    let of_ray = probe(medium, camera, run.params.f64("step"))?;
+    let of_lit = bytes_of_a_lit_pair(&plan, medium, &beams, residual);
+    let moved = of_ray.lit * of_lit + of_ray.void * BYTES_OF_A_VOID_PAIR;
+    let n_rays = n_pixels as f64 * n_sub * n_sub;
+    let moved_bytes = (n_rays * moved) as u64 + (n_pixels * size_of::<Pixel>()) as u64;
+    let march = StageWork { stage: "raymarch", runs: 1, moved_bytes: Some(moved_bytes) };
+    plan.report = Report {
+        decisions,
+        cells: None,
+        channels: Some(channels.count),
+        bytes: Some((n_pixels * super::layers::BYTES_OF_A_PIXEL) as u64),
+        stages: vec![march],
+    };
+    Ok(plan)
+}
+
+/// Two samples of extinction.
+const BYTES_OF_A_VOID_PAIR: f64 = 8.0;
+
+/// Arithmetic counts as bytes, as measured: of a pair of steps, of finding a depth or a point light, of what
+/// glows in both steps.
+const ARITHMETIC: f64 = 32.0;
+const ARITHMETIC_OF_A_PLACE: f64 = 16.0;
+const ARITHMETIC_OF_GLOW: f64 = 96.0;
+
+/// What a pair of steps reads where there is matter: two samples of extinction; a depth and, in each channel,
+/// the table of the peak for each beam; the residual; flame, temperature and black bodies of each step.
+fn bytes_of_a_lit_pair(plan: &Plan, medium: &Medium, beams: &[Beam], residual: Option<&Residual>) -> f64 {
+    let mut bytes = ARITHMETIC + if medium.homogeneous.is_some() { 0.0 } else { BYTES_OF_A_VOID_PAIR };
+    if plan.has_beams {
+        let is_placed = |beam: &&Beam| medium.homogeneous.is_some() || matches!(beam.place, Place::Point(_));
+        let peak = if plan.has_peak { 4.0 * plan.channels.count as f64 } else { 0.0 };
+        // Four of many share a texel of half floats.
+        let depth = if beams.len() <= 2 { 4.0 } else { 2.0 };
+        bytes += beams.len() as f64 * (depth + peak);
+        bytes += beams.iter().filter(is_placed).count() as f64 * ARITHMETIC_OF_A_PLACE;
+    }
+    if let Some(residual) = residual.filter(|_| plan.has_residual) {
+        bytes += 16.0 * residual.channels.count as f64;
+    }
+    if medium.emission.is_some() {
+        bytes += ARITHMETIC_OF_GLOW + 2.0 * (4.0 + 4.0 + 16.0);
+    }
+    bytes
+}
+
+/// Pairs of steps of a ray, the mean over the picture.
+struct Steps {
+    /// In blocks that hold something.
+    lit: f64,
+    /// In others.
+    void: f64,
+}
+
+/// Rays across the probe's picture, and down.
+const N_RAYS: usize = 32;
+/// Stride of a probing ray [cells]: half a block.
+const STRIDE: f64 = 4.0;
+/// Mean extinction of a filled block over its largest, about.
+const MEAN_OF_LARGEST: f64 = 0.3;
+/// Scaled optical depth at which `shaders/raymarch.wgsl` ends a ray: OPAQUE is 1e-5.
+const OPAQUE_TAU: f64 = 11.5;
+
+/// Looks through the blocks as the march will look through the cells.
+fn probe(medium: &Medium, camera: &Camera, step: f64) -> Result<Steps, NodeError> {
+    let lattice = &medium.lattice;
+    let [forward, right, up] = camera.frame().map_err(NodeError::new)?.map(|v| lattice.turned(v));
+    let eye = lattice.index_from_world().transform_point3(camera.position);
+    let high = DVec3::from_array(lattice.occupied.map(|n| (n - 1) as f64));
+    let k = medium.albedo.into_iter().map(|albedo| DeltaScaled::new(albedo, medium.g).k).fold(1.0, f64::min);
+    let share = if medium.homogeneous.is_some() { 1.0 } else { MEAN_OF_LARGEST };
+    let pairs_of_stride = STRIDE / (2.0 * step);
+    let mut sum = Steps { lit: 0.0, void: 0.0 };
+    for idx in 0..N_RAYS * N_RAYS {
+        let at = |n: usize| 2.0 * (n as f64 + 0.5) / N_RAYS as f64 - 1.0;
+        let direction = (forward + at(idx % N_RAYS) * right - at(idx / N_RAYS) * up).normalize();
+        let (near, far) = (-eye / direction, (high - eye) / direction);
+        let (mut t, end) = (near.min(far).max_element().max(0.0), near.max(far).min_element());
+        let mut tau = 0.0;
+        while t < end && tau < OPAQUE_TAU {
+            let largest = medium.blocks.at(eye + (t + 0.5 * STRIDE) * direction);
+            let pairs = pairs_of_stride * ((end - t) / STRIDE).min(1.0);
+            if largest > 0.0 {
+                sum.lit += pairs;
+            } else {
+                sum.void += pairs;
+            }
+            tau += k * share * f64::from(largest) * STRIDE * lattice.cell_m;
+            t += STRIDE;
+        }
+    }
+    let n = (N_RAYS * N_RAYS) as f64;
+    Ok(Steps { lit: sum.lit / n, void: sum.void / n })
+}
