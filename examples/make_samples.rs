@@ -8,6 +8,8 @@
 mod fire;
 #[path = "make_samples/locomotive.rs"]
 mod locomotive;
+#[path = "make_samples/park.rs"]
+mod park;
 #[path = "make_samples/plume.rs"]
 mod plume;
 #[path = "make_samples/railway.rs"]
@@ -38,7 +40,7 @@ fn main() -> anyhow::Result<()> {
     let folder = Path::new(&folder);
     let names: Vec<String> = arguments.collect();
     let wants = |name: &str| names.is_empty() || names.iter().any(|wanted| wanted == name);
-    std::fs::create_dir_all(folder.join("engine"))?;
+    std::fs::create_dir_all(folder)?;
     let volume = |name: &str, grids: &[Grid]| {
         let options = WriteOptions { compression: WriteCompression::Zip, half: true };
         vdb::write(&folder.join(name).with_extension("vdb"), grids, options)
@@ -72,10 +74,17 @@ fn main() -> anyhow::Result<()> {
             ("meadow", &railway::meadow()),
             ("grass", &railway::grass()),
         ];
-        for (name, solid) in meshes {
-            println!("{name}: {} triangles", solid.n_triangles());
-            solid.write_glb(&folder.join("engine").join(name).with_extension("glb"))?;
-        }
+        write_meshes(&folder.join("engine"), &meshes)?;
+    }
+    if wants("park") {
+        volume("mist", &[park::mist()])?;
+        let [lawn, path] = park::grounds();
+        let (lanterns, trees) = (park::lanterns(), park::trees());
+        let meshes = [("lanterns", &lanterns), ("trees", &trees), ("lawn", &lawn), ("path", &path)];
+        write_meshes(&folder.join("park"), &meshes)?;
+    }
+    if wants("wall") {
+        write_meshes(folder, &[("wall", &park::wall())])?;
     }
     if wants("sky") {
         let sky = Sky::new(2.6, 24.0);
@@ -87,6 +96,15 @@ fn main() -> anyhow::Result<()> {
         let sky = Sky::new(3.0, 11.0);
         image::exr::write(&folder.join("evening.exr"), &sky.map(512, false, Sky::evening))?;
         println!("towards the evening sun {}, its irradiance {:.3?}", sky.to_sun, sky.sun_irradiance());
+    }
+    Ok(())
+}
+
+fn write_meshes(folder: &Path, meshes: &[(&str, &Solid)]) -> anyhow::Result<()> {
+    std::fs::create_dir_all(folder)?;
+    for (name, solid) in meshes {
+        println!("{name}: {} triangles", solid.n_triangles());
+        solid.write_glb(&folder.join(name).with_extension("glb"))?;
     }
     Ok(())
 }
@@ -117,17 +135,17 @@ fn steam() -> Plume {
 /// Of a fire that is not seen, in a breath of wind.
 fn smoke() -> Plume {
     Plume {
-        voxel_m: 0.1,
+        voxel_m: 0.08,
         source: Vec3::ZERO,
-        radius: 0.7,
-        wind: Vec3::new(0.35, 0.0, 0.1),
-        jet: [0.5, 0.5],
-        rise: 2.6,
-        growth: 0.3,
-        stride: 0.6,
-        oldest: 8.0,
-        thinning: 0.4,
-        tearing: 0.7,
-        seed: 9,
+        radius: 0.55,
+        wind: Vec3::new(0.75, 0.0, 0.15),
+        jet: [0.4, 0.4],
+        rise: 2.3,
+        growth: 0.34,
+        stride: 0.7,
+        oldest: 8.5,
+        thinning: 0.5,
+        tearing: 0.75,
+        seed: 21,
     }
 }

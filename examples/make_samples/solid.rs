@@ -138,21 +138,33 @@ impl Solid {
 
     /// A pipe through these points, closed at its ends.
     pub fn pipe(points: &[DVec3], radius: f64, n: usize) -> Self {
+        let mut solid = Self::limb(points, &vec![radius; points.len()], n);
+        let corners = solid.positions.clone();
+        for end in [&corners[..n], &corners[corners.len() - n..]] {
+            solid.add(&Self::lid(end), DMat4::IDENTITY);
+        }
+        solid
+    }
+
+    /// The same of changing radius, open at its ends.
+    pub fn limb(points: &[DVec3], radii: &[f64], n: usize) -> Self {
         let last = points.len() - 1;
         let mut across = (points[1] - points[0]).any_orthonormal_vector();
         let mut rows = Vec::new();
-        for (k, &p) in points.iter().enumerate() {
+        for (k, (&p, radius)) in points.iter().zip(radii).enumerate() {
             let along = (points[(k + 1).min(last)] - points[k.saturating_sub(1)]).normalize();
             across = (across - along * across.dot(along)).normalize();
             let other = along.cross(across);
             let ring = |t: f64| p + radius * (t.cos() * across + t.sin() * other);
             rows.push((0..n).map(|m| ring(TAU * m as f64 / n as f64)).collect::<Vec<_>>());
         }
-        let mut solid = Self::sheet(&rows, true);
-        for end in [&rows[0], &rows[last]] {
-            solid.add(&Self::lid(end), DMat4::IDENTITY);
-        }
-        solid
+        Self::sheet(&rows, true)
+    }
+
+    /// What lies between two outlines in the xy plane.
+    pub fn between(inner: &[DVec2], outer: &[DVec2]) -> Self {
+        let flat = |outline: &[DVec2]| -> Vec<DVec3> { outline.iter().map(|p| p.extend(0.0)).collect() };
+        Self::sheet(&[flat(inner), flat(outer)], false)
     }
 
     /// The same section at several places, open at its ends.
