@@ -81,19 +81,25 @@ impl App {
     }
 
     fn note(&mut self, event: Event) {
-        let mut status = |name| self.statuses.entry(name).or_default();
+        let (Event::Started { name }
+        | Event::Finished { name, .. }
+        | Event::Failed { name, .. }
+        | Event::Skipped { name, .. }) = &event
+        else {
+            return;
+        };
+        let status = self.statuses.entry(name.clone()).or_default();
         match event {
-            Event::Started { name } => status(name).state = NodeState::Running,
-            Event::Finished { name, cached, cpu_ms, bytes, report } => {
-                let status = status(name);
+            Event::Started { .. } => status.state = NodeState::Running,
+            Event::Finished { cached, cpu_ms, bytes, report, .. } => {
                 (status.state, status.cached, status.bytes, status.report) =
                     (NodeState::Done, cached, bytes, report);
                 if !cached {
                     status.cpu_ms = cpu_ms;
                 }
             }
-            Event::Failed { name, message } => status(name).state = NodeState::Failed(message),
-            Event::Skipped { name, because } => status(name).state = NodeState::Skipped(because),
+            Event::Failed { message, .. } => status.state = NodeState::Failed(message),
+            Event::Skipped { because, .. } => status.state = NodeState::Skipped(because),
             Event::Cancelled => {}
         }
     }
