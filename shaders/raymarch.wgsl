@@ -18,6 +18,7 @@
 #import "lib/surface_light.wgsl"
 #import "lib/bvh.wgsl"
 #import "lib/shadow.wgsl"
+#import "lib/radial_depth.wgsl"
 #import "raymarch/beams.wgsl"
 #import "raymarch/environment.wgsl"
 #import "raymarch/surface.wgsl"
@@ -62,7 +63,8 @@ struct MarchParams {
     world_from_index: mat3x3f,
     // 0: none.
     residual_channels: u32,
-    pad_0: u32,
+    // Beams before this one have depths at corners, others grids of their own.
+    n_at_corners: u32,
     pad_1: u32,
     pad_2: u32,
     // Numbers of forward scatterings that the levels of the stack are for.
@@ -100,6 +102,8 @@ struct Pixel {
 @group(1) @binding(15) var<storage, read> surface_light: array<vec4f>;
 @group(1) @binding(16) var<storage, read> surface_corners: array<vec4u>;
 @group(1) @binding(17) var star: texture_3d<f32>;
+@group(1) @binding(18) var radial: texture_3d<f32>;
+@group(1) @binding(19) var<storage, read> radial_lights: array<RadialLight>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Where less than this is left of a ray it ends.
@@ -121,6 +125,7 @@ const HAS_STACK: bool = {stack};
 const HAS_SURFACES: bool = {surfaces};
 const HAS_GATHERED: bool = {gathered};
 const HAS_SHADOWS: bool = {shadows};
+const HAS_RADIAL: bool = {radial};
 const HAS_WIDENING: bool = {widening};
 const HAS_EMISSION: bool = {emission};
 const HAS_BEAMS: bool = {beams};

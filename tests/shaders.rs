@@ -28,6 +28,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("shadows", SWITCH),
     ("gathered", SWITCH),
     ("widening", SWITCH),
+    ("radial", SWITCH),
     ("narrow", SWITCH),
     ("emission", SWITCH),
     ("beams", SWITCH),

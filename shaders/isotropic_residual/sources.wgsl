@@ -1,10 +1,9 @@
 // A thread: what beams and emission give to one cell and channel, Q0 and Q1 [W/m3] (DESIGN 6.3).
 
 #import "isotropic_residual/common.wgsl"
+#import "isotropic_residual/cell_mean.wgsl"
 #import "lib/beam.wgsl"
 #import "lib/phase.wgsl"
-#import "lib/shadow.wgsl"
-#import "lib/transmittance.wgsl"
 
 struct SourceParams {
     level: Level,
@@ -22,47 +21,6 @@ struct SourceParams {
 @group(2) @binding(0) var sources: texture_storage_3d<rgba32float, write>;
 
 const HAS_EMISSION: bool = {emission};
-
-// -ln of the mean of exp(-t) for t from a to b.
-fn depth_between(a: f32, b: f32) -> f32 {
-    return min(a, b) - log(mean_transmittance(abs(b - a)));
-}
-
-// Mean of exp(-k tau) over a cell from its corners, numbered x + 2y + 4z: along `axis` first, then along
-// the other two. Exact where tau is linear, so what a beam gives to cells is what it loses. Where the
-// edge of a shadow crosses the cell, the mean over the corners, of which the hidden ones have no light.
-fn cell_mean(t: array<f32, 8>, k: f32, axis: u32) -> f32 {
-    var corners = t;
-    var n_lit = 0.0;
-    var lit = 0.0;
-    for (var n = 0u; n < 8u; n += 1u) {
-        let sees_light = !is_hidden(corners[n]);
-        n_lit += select(0.0, 1.0, sees_light);
-        lit += select(0.0, exp(-k * corners[n]), sees_light);
-    }
-    if n_lit < 8.0 {
-        return lit / 8.0;
-    }
-    let first = 1u << axis;
-    let second = 1u << ((axis + 1u) % 3u);
-    let third = 1u << ((axis + 2u) % 3u);
-    var faces: array<f32, 2>;
-    for (var n = 0u; n < 2u; n += 1u) {
-        let at = n * third;
-        let near = depth_between(k * corners[at], k * corners[at | first]);
-        let far = depth_between(k * corners[at | second], k * corners[at | second | first]);
-        faces[n] = depth_between(near, far);
-    }
-    return exp(-depth_between(faces[0], faces[1]));
-}
-
-fn largest_axis(v: vec3f) -> u32 {
-    let a = abs(v);
-    if a.x >= a.y && a.x >= a.z {
-        return 0u;
-    }
-    return select(2u, 1u, a.y >= a.z);
-}
 
 // Mean of 1 / r^2 [1/m2] over the cell at `cell`, for a light at `position`, in index space.
 fn mean_inverse_square(cell: vec3f, position: vec3f, cell_m: f32) -> f32 {
@@ -114,7 +72,7 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
                     let line = vec3f(cell) - beam.place.xyz;
                     direction = line / max(length(line), 1e-6);
                     axis = largest_axis(0.5 * vec3f(level.dims) - 0.5 - beam.place.xyz);
-                    spreading = mean_inverse_square(vec3f(cell), beam.place.xyz, level.cell_m);
+                    spreading = emission_along(beam, direction) * mean_inverse_square(vec3f(cell), beam.place.xyz, level.cell_m);
                 }
                 let mean = beam.power[c] * spreading * cell_mean(one, channel.k, axis);
                 total += mean * vec4f(1.0, level.g_star * beam.power.w * direction);

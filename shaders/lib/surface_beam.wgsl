@@ -20,7 +20,7 @@ fn arrival(beam: Beam, has_points: bool, sigma_t: texture_3d<f32>, linear_clamp:
         let line = beam.place.xyz - p;
         reach = max(length(line), SURFACE_GAP);
         to_light = line / reach;
-        falloff = 1.0 / (reach * reach * cell_m * cell_m);
+        falloff = emission_along(beam, -to_light) / (reach * reach * cell_m * cell_m);
     }
     let cosine = dot(normal, to_light);
     if cosine <= 0.0 || is_occluded(p, to_light, reach) {

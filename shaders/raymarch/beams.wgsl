@@ -53,7 +53,18 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
         // Of light that counts as not scattered, where it spreads as it goes.
         var stars = vec4f(0.0);
         var star_share = vec4f(1.0);
-        if HAS_SHADOWS {
+        if HAS_RADIAL && first >= params.n_at_corners {
+            for (var m = 0u; m < min(PACK, n_beams() - first); m += 1u) {
+                let position = beams[first + m].place.xyz;
+                let light = radial_lights[first + m - params.n_at_corners];
+                let line = p - position;
+                let found = radial_depth(light, linear_clamp, params.shape, params.cell_m, HAS_SHADOWS, position, line, length(line));
+                depths[m] = found.tau;
+                share[m] = found.share;
+                stars[m] = found.tau;
+                star_share[m] = found.share;
+            }
+        } else if HAS_SHADOWS {
             let lit = lit_between(tau, vec3u(origin), corners, p + 0.5);
             depths = lit.tau;
             share = lit.share;
@@ -80,7 +91,7 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
                 reach = sqrt(r2);
                 // Within the ball that has the volume of a cube of the segment's length the ball's mean, 3 / radius^2.
                 let falloff = select(1.0 / max(r2, near2), 3.0 / near2, r2 < near2);
-                power = power * (falloff / (params.cell_m * params.cell_m));
+                power = power * (emission_along(beam, travel) * falloff / (params.cell_m * params.cell_m));
             }
             var tau_n = depths[m];
             if !HAS_VOXELS {

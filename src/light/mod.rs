@@ -31,6 +31,15 @@ pub enum Light {
         /// [W/sr], linear Rec. 709.
         intensity: [f64; 3],
     },
+    /// A virtual light: what a small piece of a surface sends back, by the cosine, from its front alone.
+    Surface {
+        /// In the world, in meters.
+        position: DVec3,
+        /// Unit vector away from the lit side.
+        normal: DVec3,
+        /// [W], linear Rec. 709: radiant intensity is power cos / pi.
+        power: [f64; 3],
+    },
 }
 
 /// A principal ordinate: parallel light that stands for a region of directions.

@@ -209,7 +209,13 @@ fn a_constant_sky_fills_a_white_medium() {
 fn a_second_run_gives_the_same_bytes() {
     let Some(gpu) = gpu() else { return };
     let mut lights = vec![sun(DVec3::new(0.4, -0.3, 0.8), 3.0); 5];
-    lights[3] = Beam { power: [1.0, 0.5, 0.2], place: Place::Parallel(DVec3::NEG_Y), a0: 0.8, window: None };
+    lights[3] = Beam {
+        power: [1.0, 0.5, 0.2],
+        place: Place::Parallel(DVec3::NEG_Y),
+        a0: 0.8,
+        window: None,
+        facing: None,
+    };
     let run = || {
         let rendered = render(gpu, &scene(), &lights, 0.2, "default");
         let states: Vec<Vec<f64>> = states(gpu, &rendered.residual).iter().map(flat).collect();

@@ -11,6 +11,7 @@ use crate::gpu::{Gpu, GpuError, Recorder};
 use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Report, Value};
 use crate::wire::{Beams, Medium};
 
+mod bounce_lights;
 mod camera;
 mod environment;
 #[cfg(test)]
@@ -55,6 +56,7 @@ pub static KINDS: &[NodeKind] = &[
     prefilter::KIND,
     principal_propagation::KIND,
     spherical_propagation::KIND,
+    bounce_lights::KIND,
     isotropic_residual::KIND,
     raymarch::KIND,
     tone_map::KIND,

@@ -212,7 +212,7 @@ impl Scene {
             Place::Point(position) => {
                 let position = world_from_index.transform_point3(position);
                 let light = Light::Point { position, intensity: light.power };
-                Some(Value::new(PortType::Light, 0, light))
+                Some(Value::new(PortType::Light, 0, vec![light]))
             }
         };
         let points: Vec<Value> = lights.iter().filter_map(point).collect();
@@ -278,12 +278,18 @@ pub fn ball(center: DVec3, n_cuts: usize) -> Vec<[DVec3; 3]> {
 
 /// White parallel light along a direction of index space.
 pub fn sun(direction: DVec3, irradiance: f64) -> Beam {
-    Beam { place: Place::Parallel(direction.normalize()), power: [irradiance; 3], a0: 1.0, window: None }
+    Beam {
+        place: Place::Parallel(direction.normalize()),
+        power: [irradiance; 3],
+        a0: 1.0,
+        window: None,
+        facing: None,
+    }
 }
 
 /// A white point light at a position of index space.
 pub fn point(position: DVec3, intensity: f64) -> Beam {
-    Beam { place: Place::Point(position), power: [intensity; 3], a0: 1.0, window: None }
+    Beam { place: Place::Point(position), power: [intensity; 3], a0: 1.0, window: None, facing: None }
 }
 
 /// A channel of a beam for the oracle, in the f32 numbers that the shaders get.

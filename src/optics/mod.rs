@@ -9,6 +9,7 @@ pub mod blackbody;
 pub mod delta;
 pub mod directions;
 pub mod lobe;
+pub mod octahedral;
 pub mod peak;
 pub mod phase;
 pub mod spectrum;

@@ -15,9 +15,11 @@
 pub mod cost;
 mod rules;
 mod scattering;
+mod spherical;
 
 pub use rules::{
-    Colors, Depths, Split, beams, channels, closed_form, constant_light, depths, directions, empty_space,
-    forward_peak, lobes, number, one_depth, residual, split, stack, three_channels,
+    Colors, Depths, Split, beams, bounce, channels, closed_form, constant_light, depths, directions,
+    empty_space, forward_peak, lobes, number, one_depth, residual, split, stack, three_channels,
 };
 pub use scattering::{ERROR_TARGET, Lit, Scattering, scattering};
+pub use spherical::{Points, Spherical, spherical};

@@ -149,6 +149,33 @@ pub fn beams(albedo: [f64; 3], powers: &[[f64; 3]], prune: bool) -> (bool, Decis
     (true, Decision::kept(RULE, "beams", "light is scattered out of them", data))
 }
 
+/// Whether surfaces send light of beams back as virtual lights.
+pub fn bounce(
+    powers: &[[f64; 3]],
+    reflectances: &[[f64; 3]],
+    n_lights: usize,
+    prune: bool,
+) -> (bool, Decision) {
+    const RULE: &str = "bounce";
+    let n_lit = powers.iter().filter(|power| chromaticity(**power).is_some()).count();
+    let n_white = reflectances.iter().filter(|share| chromaticity(**share).is_some()).count();
+    let what = count(n_lights, "virtual light");
+    let data = format!(
+        "{} with light; {} of {} reflect",
+        count(n_lit, "beam"),
+        n_white,
+        count(reflectances.len(), "surface")
+    );
+    let left_out = |reason: &str| (false, Decision::left_out(RULE, what.clone(), reason, data.clone()));
+    match () {
+        () if powers.is_empty() => left_out("no light arrives"),
+        () if !prune => (true, Decision::kept(RULE, what, "everything is modeled", data)),
+        () if n_lit == 0 => left_out("no light arrives"),
+        () if n_white == 0 => left_out("surfaces are black"),
+        () => (true, Decision::kept(RULE, what, "surfaces send light back", data)),
+    }
+}
+
 /// Whether an environment shines through a medium by the blurred levels of `prefilter`.
 pub fn stack(g: f64, is_map: bool) -> (bool, Decision) {
     const RULE: &str = "stack";
@@ -403,6 +430,16 @@ mod tests {
         assert!(found(0.5, &lit, true) && !found(0.5, &lit[1..], true) && !found(0.0, &lit, true));
         assert!(found(0.0, &lit, false) && found(0.5, &lit[1..], false) && !found(0.5, &[], false));
         assert_eq!(beams([0.5; 3], &lit, true).1.data, "2 beams, 1 of them lit; albedo 0.5");
+    }
+
+    #[test]
+    fn what_is_black_or_dark_sends_nothing_back() {
+        let found = |powers: &[[f64; 3]], share, prune| bounce(powers, &[[share; 3]], 8, prune).0;
+        let lit = [[0.0, 0.0, 1.0], [0.0; 3]];
+        assert!(found(&lit, 0.5, true) && !found(&lit[1..], 0.5, true) && !found(&lit, 0.0, true));
+        assert!(found(&lit, 0.0, false) && !found(&[], 0.5, false));
+        let data = bounce(&lit, &[[0.5; 3]], 8, true).1.data;
+        assert_eq!(data, "1 beam with light; 1 of 1 surface reflect");
     }
 
     #[test]

@@ -4,10 +4,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::{Channels, LightField};
+use super::{Channels, LightField, RadialGrids};
 use crate::gpu::{Bind, Buffer, Format, Gpu, GpuError, Recorder, Texture};
 use crate::light::Window;
 use crate::mirror;
+use crate::optics::octahedral;
 use crate::volume::Lattice;
 
 /// Where a beam comes from, in index space.
@@ -30,6 +31,8 @@ pub struct Beam {
     pub a0: f64,
     /// Where its forward share comes from the environment's stack.
     pub window: Option<Window>,
+    /// Of a point that shines by the cosine the unit vector that it faces; its power is then the mean intensity.
+    pub facing: Option<DVec3>,
 }
 
 /// Beams with their optical depths.
@@ -48,6 +51,10 @@ pub struct Beams {
     pub has_shadows: bool,
     /// Depths by which E\* = E exp(−k tau) where the peak widens; without them, those of `tau`.
     pub peak: Option<TauAtlas>,
+    /// The last so many of the beams have no depths at corners, but on grids of their own.
+    pub n_radial: usize,
+    /// Those grids; `None` where there are none, or a run was only foretold.
+    pub radial: Option<RadialGrids>,
     /// Light that is known already, besides the beams; the residual hands it on to the camera.
     pub fields: Vec<LightField>,
 }
@@ -78,11 +85,12 @@ pub struct TauAtlas {
 mirror! {
     /// `Beam` of `shaders/lib/beam.wgsl`.
     pub struct BeamTexel {
-        /// Direction of travel or position, and 0 or 1.
+        /// Direction of travel or position, and 0, or 1 for a point, or 2 for one that shines by the cosine.
         place: [f32; 4],
         /// Power of three channels, and a0.
         power: [f32; 4],
-        /// Cosines of the window's inner and outer angle; 2 and 2, which no cosine reaches, for none.
+        /// Cosines of the window's inner and outer angle; 2 and 2, which no cosine reaches, for none. Then what a
+        /// point faces, octahedral.
         window: [f32; 4],
     }
 }
@@ -92,14 +100,15 @@ impl Beam {
     pub fn texel(&self, power: [f64; 3]) -> BeamTexel {
         let (place, point) = match self.place {
             Place::Parallel(direction) => (direction, 0.0),
-            Place::Point(position) => (position, 1.0),
+            Place::Point(position) => (position, if self.facing.is_some() { 2.0 } else { 1.0 }),
         };
+        let facing = self.facing.map_or([0.0; 2], octahedral::from_direction);
         let power = power.map(|p| p as f32);
         let [inner, outer] = self.window.map_or([2.0; 2], Window::cosines);
         BeamTexel {
             place: place.as_vec3().extend(point).to_array(),
             power: [power[0], power[1], power[2], self.a0 as f32],
-            window: [inner as f32, outer as f32, 0.0, 0.0],
+            window: [inner as f32, outer as f32, facing[0] as f32, facing[1] as f32],
         }
     }
 }
@@ -223,6 +232,8 @@ impl Beams {
             lattice: lattice.clone(),
             has_shadows: false,
             peak: None,
+            n_radial: 0,
+            radial: None,
             fields: Vec::new(),
         }
     }
@@ -233,15 +244,50 @@ impl Beams {
     /// # Errors
     /// [`GpuError`] where the device has no room.
     pub fn merge(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
-        let carried: Vec<&Beams> = parts.iter().copied().filter(|part| part.tau.is_some()).collect();
+        let is_carried = |part: &&Beams| part.tau.is_some() || part.radial.is_some();
+        let carried: Vec<&Beams> = parts.iter().copied().filter(is_carried).collect();
         let ambient = std::array::from_fn(|c| parts.iter().map(|part| part.ambient[c]).sum());
         let fields = parts.iter().flat_map(|part| part.fields.iter().cloned()).collect();
         let merged = match carried.as_slice() {
             [] => Self::new(lattice, parts.iter().flat_map(|part| part.beams.iter().copied()).collect()),
             [one] => (*one).clone(),
-            _ => Self::concatenate(gpu, lattice, &carried)?,
+            _ => {
+                let at_corners: Vec<&Beams> =
+                    carried.iter().copied().filter(|part| part.tau.is_some()).collect();
+                let corners = match at_corners.as_slice() {
+                    [] => Self::new(lattice, Vec::new()),
+                    [one] => (*one).clone(),
+                    _ => Self::concatenate(gpu, lattice, &at_corners)?,
+                };
+                corners.with_radial(gpu, &carried)?
+            }
         };
         Ok(Self { ambient, fields, ..merged })
+    }
+
+    /// The same, followed by the beams of `parts` that have grids of their own.
+    fn with_radial(mut self, gpu: &Gpu, parts: &[&Beams]) -> Result<Self, GpuError> {
+        let grids: Vec<&RadialGrids> = parts.iter().filter_map(|part| part.radial.as_ref()).collect();
+        if grids.is_empty() {
+            return Ok(self);
+        }
+        // Packs of the atlas are full, so that a pack is either in it or not.
+        if let Some(last) = self.beams.last().copied() {
+            let dark = Beam { power: [0.0; 3], ..last };
+            self.beams.resize(self.beams.len().next_multiple_of(self.pack()), dark);
+        }
+        for part in parts.iter().filter(|part| part.radial.is_some()) {
+            self.beams.extend(&part.beams);
+            self.n_radial += part.beams.len();
+            self.has_shadows |= part.has_shadows;
+        }
+        self.radial = Some(RadialGrids::merge(gpu, &grids)?);
+        Ok(self)
+    }
+
+    /// Beams whose depths stand at corners.
+    pub fn n_at_corners(&self) -> usize {
+        self.beams.len() - self.n_radial
     }
 
     /// For shaders: the beams with the power of the channels that are solved; one without power where there are
@@ -253,6 +299,18 @@ impl Beams {
         let texels: Vec<_> = self.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
         let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
         gpu.buffer_from("beams", &texels, "lower light_decomposition.count")
+    }
+
+    /// For shaders: the grids, and where each stands; where there are none, one that no beam has.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the device has no room.
+    pub fn radial_binds(&self, gpu: &Gpu) -> Result<(Arc<Texture>, Buffer), GpuError> {
+        let grids = match &self.radial {
+            Some(grids) => grids.clone(),
+            None => RadialGrids::none(gpu)?,
+        };
+        Ok((Arc::clone(&grids.texture), grids.list(gpu)?))
     }
 
     /// Beams that share a texel of the depths.

@@ -127,6 +127,12 @@ impl Surfaces {
     pub fn binds(&self) -> [Bind<'_>; 2] {
         [Bind::Buffer(&self.nodes), Bind::Buffer(&self.triangles)]
     }
+
+    /// Share of the light that a triangle sends back.
+    pub fn reflectance(&self, triangle: u32) -> [f32; 3] {
+        self.reflectances[triangle as usize]
+    }
+
     /// On the GPU.
     pub fn bytes(&self) -> u64 {
         self.nodes.bytes() + self.triangles.bytes()

@@ -74,7 +74,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let tau = walk::walk(
         run,
         medium,
-        &[Beam { place: Place::Point(eye), power: [1.0; 3], a0: 1.0, window: None }],
+        &[Beam { place: Place::Point(eye), power: [1.0; 3], a0: 1.0, window: None, facing: None }],
     )?;
     let bytes = tau.texture.bytes();
     let importance = Importance { light, tau, lattice: medium.lattice.clone() };

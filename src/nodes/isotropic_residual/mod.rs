@@ -28,6 +28,7 @@ mod level;
 #[cfg(test)]
 pub(super) mod oracle;
 mod plan;
+mod radial;
 mod solver;
 mod sources;
 mod thick;

@@ -39,6 +39,12 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
              or disconnect surfaces",
         ));
     }
+    if has_surfaces && beams.iter().any(|beam| beam.facing.is_some()) {
+        return Err(NodeError::new(
+            "beams hold light of bounce_lights, which surfaces wired here would send back a second time: disconnect \
+             surfaces here, or leave bounce_lights out",
+        ));
+    }
     let powers: Vec<[f64; 3]> = beams.iter().map(|beam| beam.power).collect();
     let ambient = std::array::from_fn(|c| parts.iter().map(|part| part.ambient[c]).sum());
     let glows = medium.emission.is_some();
@@ -95,7 +101,14 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
         }
         let (is_carried, decision) = planner::beams(medium.albedo, &powers, run.prune);
         decisions.extend([lobes, decision]);
-        stages = work(dims, channels.count, if is_carried { beams.len() } else { 0 }, effort, has_surfaces);
+        let n_radial: usize = parts.iter().map(|part| part.n_radial).sum();
+        let n_at_corners = if is_carried { beams.len() - n_radial } else { 0 };
+        stages = work(dims, channels.count, n_at_corners, effort, has_surfaces);
+        if is_carried && n_radial > 0 {
+            // What a light's cells near it cost is not known by bytes.
+            let stage = "isotropic_residual/radial_sources";
+            stages.push(StageWork { stage, runs: 1, moved_bytes: None });
+        }
         n_cells = dims.iter().product();
     }
     let bytes = Some(16 * (n_cells * channels.count) as u64);

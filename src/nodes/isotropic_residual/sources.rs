@@ -45,7 +45,7 @@ pub(super) fn sources(
     let depths = beams.depths(gpu)?;
     let params = SourceParams {
         level,
-        n_beams: if beams.tau.is_some() { beams.beams.len() as u32 } else { 0 },
+        n_beams: if beams.tau.is_some() { beams.n_at_corners() as u32 } else { 0 },
         packs_per_column: depths.tau.packs_per_column as u32,
         pad_0: 0,
         pad_1: 0,
@@ -63,6 +63,7 @@ pub(super) fn sources(
     let stage = gpu.stage("isotropic_residual/sources", &choices)?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
     run.finish(recorder)?;
+    let field = super::radial::add(run, medium, beams, channels, problem, field)?;
     with_sums(run, problem, &level, field)
 }
 

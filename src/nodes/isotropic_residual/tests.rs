@@ -35,7 +35,7 @@ fn oracle_sources(scene: &Scene, channel: usize, beams: &Beams, taus: &[Field<f6
 }
 
 /// Q0 and Q1 as the node makes them, a field a channel.
-fn gpu_sources(gpu: &Gpu, medium: &Value, beams: &Value) -> Vec<Field<glam::DVec4>> {
+pub(super) fn gpu_sources(gpu: &Gpu, medium: &Value, beams: &Value) -> Vec<Field<glam::DVec4>> {
     let inputs = [("medium", medium), ("beams", beams)];
     with_run(gpu, "isotropic_residual", json!({}), &inputs, |run| {
         let (medium, beams): (&Medium, &Beams) = (medium.get(), beams.get());

@@ -63,7 +63,7 @@ static SPEC: NodeSpec = NodeSpec {
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let mut light = Ordinates::default();
-    for source in run.inputs.many::<Light>("lights") {
+    for source in run.inputs.many::<Vec<Light>>("lights").into_iter().flatten() {
         match source {
             Light::Sun { direction, irradiance, angular_diameter_deg } => light.ordinates.push(Ordinate {
                 direction: *direction,
@@ -76,6 +76,11 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
             Light::Point { .. } => {
                 return Err(NodeError::new(
                     "lights takes suns, found a point light: wire it to spherical_propagation.lights",
+                ));
+            }
+            Light::Surface { .. } => {
+                return Err(NodeError::new(
+                    "lights takes suns, found light of surfaces: wire bounce_lights to spherical_propagation.lights",
                 ));
             }
         }

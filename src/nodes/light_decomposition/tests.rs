@@ -13,7 +13,7 @@ use crate::nodes::testing::{Filling, Scene, gpu, output, run, with_shares};
 fn sun(angular_diameter_deg: f64) -> Value {
     let direction = DVec3::new(0.6, 0.0, -0.8);
     let sun = Light::Sun { direction, irradiance: [3.0, 2.0, 1.0], angular_diameter_deg };
-    Value::new(PortType::Light, 0, sun)
+    Value::new(PortType::Light, 0, vec![sun])
 }
 
 #[test]
@@ -38,7 +38,7 @@ fn suns_pass_with_the_spread_of_their_disks() {
 fn point_lights_are_sent_elsewhere() {
     let Some(gpu) = gpu() else { return };
     let light = Light::Point { position: DVec3::ZERO, intensity: [1.0; 3] };
-    let light = Value::new(PortType::Light, 0, light);
+    let light = Value::new(PortType::Light, 0, vec![light]);
     let error = run(gpu, "light_decomposition", json!({}), &[("lights", &light)]).unwrap_err();
     assert!(error.to_string().contains("wire it to spherical_propagation.lights"), "{error}");
 }

@@ -31,5 +31,5 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         position: DVec3::from_array(run.params.vec("position")),
         intensity: run.params.rgb("intensity"),
     };
-    Ok(vec![Value::new(PortType::Light, size_of::<Light>() as u64, light)])
+    Ok(vec![Value::new(PortType::Light, size_of::<Light>() as u64, vec![light])])
 }

@@ -71,6 +71,7 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
             power: ordinate.irradiance,
             a0: ordinate.a0,
             window: ordinate.window,
+            facing: None,
         })
         .collect();
     let powers: Vec<[f64; 3]> = beams.iter().map(|beam| beam.power).collect();

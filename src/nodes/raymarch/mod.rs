@@ -96,7 +96,7 @@ mirror! {
         residual_color: [f32; 4],
         world_from_index: [[f32; 4]; 3],
         residual_channels: u32,
-        pad_0: u32,
+        n_at_corners: u32,
         pad_1: u32,
         pad_2: u32,
         stack_x: [[f32; 4]; 4],
@@ -139,6 +139,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let nothing = gpu.buffer_from("no light on surfaces", &[[0.0_f32; 4]; 2], "")?;
     let [light, corners] = gathered.map_or([Bind::Buffer(&nothing); 2], SurfaceLight::binds);
     let [nodes, triangles] = gathered.map_or(&surfaces, SurfaceLight::surfaces).binds();
+    let (radial, radial_lights) = beams.radial_binds(gpu)?;
     let inputs = [
         Bind::Texture(&medium.sigma_t),
         Bind::Sampler(&clamp),
@@ -158,6 +159,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         light,
         corners,
         Bind::Texture(&depths.star.texture),
+        Bind::Texture(&radial),
+        Bind::Buffer(&radial_lights),
     ];
 
     let stage = gpu.stage("raymarch", &choices(&plan, medium, &beams, residual, &backdrop, &surfaces))?;
@@ -192,7 +195,7 @@ fn choices(
     residual: Option<&Residual>,
     backdrop: &Backdrop,
     surfaces: &Surfaces,
-) -> [(&'static str, String); 17] {
+) -> [(&'static str, String); 18] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
     let window = beams.beams.iter().any(|beam| beam.window.is_some());
     let gathered = residual.and_then(|residual| residual.surface_light.as_ref());
@@ -211,6 +214,7 @@ fn choices(
         ("surfaces", (!surfaces.is_empty()).to_string()),
         ("shadows", beams.has_shadows.to_string()),
         ("gathered", gathered.is_some().to_string()),
+        ("radial", beams.radial.is_some().to_string()),
         ("widening", beams.peak.is_some().to_string()),
         ("emission", medium.emission.is_some().to_string()),
         ("beams", plan.has_beams.to_string()),
@@ -279,7 +283,7 @@ fn params(
         world_from_index: [rotation.x_axis, rotation.y_axis, rotation.z_axis]
             .map(|axis| axis.as_vec3().extend(0.0).to_array()),
         residual_channels: residual.map_or(0, |residual| residual.channels.count as u32),
-        pad_0: 0,
+        n_at_corners: beams.n_at_corners() as u32,
         pad_1: 0,
         pad_2: 0,
         stack_x: std::array::from_fn(|row| std::array::from_fn(|n| STACK_X[4 * row + n] as f32)),

@@ -6,13 +6,121 @@
 //! the axis nearest to the line from the light to the grid's center.
 //!
 //! In: sigma_t [1/m], `h` (m), position in index coordinates. Out: tau at corners; mean irradiance
-//! [1/m²] at cells. Limits: r⁻² and e^{−k tau} are averaged apart. Tested in vacuum, by the closed
+//! [1/m²] at cells. [`RadialOracle`] is the grid of a light, with walks from node to node. Limits: r⁻² and e^{−k tau} are averaged apart. Tested in vacuum, by the closed
 //! form of a homogeneous medium, and by the integral of r⁻² over a cube.
 
 use glam::DVec3;
 
 use crate::nodes::oracle_scene::corners::{corner_field, mean_over_cells, tau_along};
+use crate::optics::octahedral;
 use crate::volume::field::Field;
+use crate::wire::{Fineness, Spacing};
+
+/// The grid of distance and direction around a light (`wire/radial.rs`).
+pub struct RadialOracle {
+    spacing: Spacing,
+    fineness: Fineness,
+    /// Depths by direction, row by row, then by node.
+    pub tau: Vec<f64>,
+}
+
+impl RadialOracle {
+    /// Walks along each direction from node to node, with samples at most a cell apart.
+    pub fn new(sigma_t: &Field<f64>, h: f64, position: DVec3, fineness: Fineness) -> Self {
+        let last = DVec3::from_array(sigma_t.dims.map(|n| (n - 1) as f64));
+        let spacing = Spacing::new(position, last);
+        let directions = spacing.directions(fineness.n_angular);
+        let mut tau = vec![0.0; directions.len()];
+        for node in 1..fineness.n_radial {
+            let [from, to] = [node - 1, node].map(|node| Self::distance(&spacing, fineness, node));
+            let before = tau.len() - directions.len();
+            for (idx, (direction, _)) in directions.iter().enumerate() {
+                let step = tau_inside(sigma_t, h, position + from * *direction, *direction, to - from);
+                tau.push(tau[before + idx] + step);
+            }
+        }
+        Self { spacing, fineness, tau }
+    }
+
+    /// Distance of a node [cells].
+    pub fn distance(spacing: &Spacing, fineness: Fineness, node: usize) -> f64 {
+        let n = (fineness.n_radial - 1) as f64;
+        match (spacing.is_log, node) {
+            (false, _) => spacing.first + (spacing.last - spacing.first) * node as f64 / n,
+            (true, 0) => 0.0,
+            (true, _) => spacing.last * 100f64.powf((node - 1) as f64 / (n - 1.0) - 1.0),
+        }
+    }
+
+    /// Depths of whole ways.
+    pub fn exits(&self) -> &[f64] {
+        &self.tau[self.tau.len() - self.fineness.n_angular.pow(2)..]
+    }
+
+    /// Depth at `line` from the light, linear between nodes and directions; at the edges of a whole sphere's
+    /// square the nearest direction's.
+    pub fn at(&self, line: DVec3) -> f64 {
+        let [right, up, axis] = self.spacing.frame;
+        let r = line.length();
+        // On the light itself, where no direction is.
+        if r == 0.0 {
+            return 0.0;
+        }
+        let n_angular = self.fineness.n_angular;
+        let at = octahedral::from_direction(DVec3::new(line.dot(right), line.dot(up), line.dot(axis)));
+        let place = |side: usize| {
+            let texel =
+                (at[side] - self.spacing.low[side]) / self.spacing.extent[side] * n_angular as f64 - 0.5;
+            texel.clamp(0.0, (n_angular - 1) as f64)
+        };
+        let last = (self.fineness.n_radial - 1) as f64;
+        let second = 0.01 * self.spacing.last;
+        let node = match self.spacing.is_log {
+            false => last * (r - self.spacing.first) / (self.spacing.last - self.spacing.first),
+            true if r < second => r / second,
+            true => 1.0 + (last - 1.0) * (r / second).ln() / 100f64.ln(),
+        };
+        let dims = [n_angular, n_angular, self.fineness.n_radial];
+        let (x, y, z) = (place(0), place(1), node.clamp(0.0, last));
+        let mut sum = 0.0;
+        for corner in 0..8 {
+            let mut weight = 1.0;
+            let mut index = [0; 3];
+            for (axis, at) in [x, y, z].into_iter().enumerate() {
+                let low = at.floor().min((dims[axis] - 2) as f64);
+                let step = corner >> axis & 1;
+                weight *= if step == 1 { at - low } else { 1.0 - at + low };
+                index[axis] = low as usize + step;
+            }
+            sum += weight * self.tau[index[0] + n_angular * (index[1] + n_angular * index[2])];
+        }
+        sum
+    }
+}
+
+/// As [`tau_along`], within the box between the outermost centers, which are void: as shaders walk.
+fn tau_inside(sigma_t: &Field<f64>, h: f64, from: DVec3, toward: DVec3, length: f64) -> f64 {
+    let last = DVec3::from_array(sigma_t.dims.map(|n| (n - 1) as f64));
+    let (mut start, mut end) = (0.0, length);
+    for axis in 0..3 {
+        if toward[axis].abs() < 1e-12 {
+            if from[axis] < 0.0 || from[axis] > last[axis] {
+                return 0.0;
+            }
+            continue;
+        }
+        let (a, b) = (-from[axis] / toward[axis], (last[axis] - from[axis]) / toward[axis]);
+        start = f64::max(start, a.min(b));
+        end = f64::min(end, a.max(b));
+    }
+    if end <= start {
+        return 0.0;
+    }
+    let n_steps = (end - start).ceil();
+    let step = (end - start) / n_steps;
+    let at = |i: usize| sigma_t.trilinear_zero(from + toward * (start + (i as f64 + 0.5) * step));
+    (0..n_steps as usize).map(at).sum::<f64>() * step * h
+}
 
 /// Unscaled optical depth from the point `position_in_index` to the cells' corners.
 pub fn tau_corners_walk_point(sigma_t: &Field<f64>, h: f64, position_in_index: DVec3) -> Field<f64> {

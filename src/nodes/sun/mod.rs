@@ -38,5 +38,5 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         irradiance: run.params.rgb("irradiance"),
         angular_diameter_deg: run.params.f64("angular_diameter_deg"),
     };
-    Ok(vec![Value::new(PortType::Light, size_of::<Light>() as u64, light)])
+    Ok(vec![Value::new(PortType::Light, size_of::<Light>() as u64, vec![light])])
 }
