@@ -322,8 +322,8 @@ mod tests {
                 }
                 let at =
                     octahedral::from_direction(DVec3::new(line.dot(right), line.dot(up), line.dot(axis)));
-                for side in 0..2 {
-                    let part = (at[side] - spacing.low[side]) / spacing.extent[side];
+                for (at, (low, extent)) in at.into_iter().zip(spacing.low.into_iter().zip(spacing.extent)) {
+                    let part = (at - low) / extent;
                     assert!((0.0..=1.0).contains(&part), "{position}: {p} at {part}");
                 }
                 assert!((spacing.first..=spacing.last).contains(&line.length()), "{position}: {p}");

@@ -67,7 +67,8 @@ fn assert_power(gpu: &Gpu, what: &str, scene: &Scene, lights: &[(DVec3, Option<D
 #[test]
 fn lights_give_what_their_rays_lose() {
     let Some(gpu) = gpu() else { return };
-    let cases: [(&str, &[(DVec3, Option<DVec3>)]); 7] = [
+    type Case<'a> = (&'a str, &'a [(DVec3, Option<DVec3>)]);
+    let cases: [Case; 7] = [
         ("inside", &[(INSIDE, None)]),
         ("on a corner", &[(ON_A_CORNER, None)]),
         ("on the face of the box", &[(DVec3::new(0.0, 6.0, 7.0), None)]),
