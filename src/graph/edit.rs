@@ -1,10 +1,17 @@
-//! One parameter set from text: `--set node.parameter=value`.
+//! Changes of a document: one parameter set from text here, `--set node.parameter=value`, and in the modules
+//! below nodes, wires, the clipboard, groups and the folder. What is refused leaves the document as it was.
 //!
 //! The text is JSON; what is no JSON is a string where a string is taken (text, choice, path), else an
 //! error. A member of a record is `medium.emission.flame`, and the record comes to be when it was null.
 //! Paths on a command line start at the working directory, those of a file at the file, so a path is
 //! made absolute here. The value is checked before the document changes. Tested by values of each form
 //! and the exact text of every error.
+
+mod clipboard;
+mod groups;
+mod nodes;
+mod paths;
+mod wires;
 
 use std::path::Path;
 
@@ -29,6 +36,11 @@ pub enum SetError {
         /// What was found and what is allowed.
         message: String,
     },
+}
+
+/// Text for a node that is not there.
+fn no_node(document: &Document, name: &str) -> String {
+    format!("'{name}': {}", unknown_node(document, name))
 }
 
 impl Document {
