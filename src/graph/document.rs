@@ -158,12 +158,12 @@ impl Document {
     /// # Errors
     /// Says what is wrong and what is allowed.
     pub fn parse(text: &str, base: &Path) -> Result<Self, DocumentError> {
-        let mut root = match parse_json(text).map_err(DocumentError::Json)? {
-            Json::Object(root) => root,
-            other => {
-                return Err(DocumentError::Form(vec![form("the graph", &other, "an object")]));
-            }
-        };
+        Self::from_json(parse_json(text).map_err(DocumentError::Json)?, base)
+    }
+
+    /// As [`Self::parse`], of JSON that has been read.
+    pub(super) fn from_json(json: Json, base: &Path) -> Result<Self, DocumentError> {
+        let mut root = object(json)?;
         migrate(&mut root, MIGRATIONS)?;
         let (document, problems) = read::graph(root, base);
         if problems.is_empty() { Ok(document) } else { Err(DocumentError::Form(problems)) }
@@ -175,12 +175,7 @@ impl Document {
     /// # Errors
     /// Where it is no JSON object with a version.
     pub fn open_leniently(text: &str, base: &Path) -> Result<(Self, Vec<String>), DocumentError> {
-        let mut root = match parse_json(text).map_err(DocumentError::Json)? {
-            Json::Object(root) => root,
-            other => {
-                return Err(DocumentError::Form(vec![form("the graph", &other, "an object")]));
-            }
-        };
+        let mut root = object(parse_json(text).map_err(DocumentError::Json)?)?;
         let mut left_out = Vec::new();
         match root.get("tyndall").and_then(Json::as_u64).filter(|version| *version > VERSION) {
             Some(version) => left_out.push(format!(
@@ -196,9 +191,14 @@ impl Document {
 
     /// The text of the file, with a line end.
     pub fn to_json(&self) -> String {
+        write::pretty(&Json::Object(self.to_fields()))
+    }
+
+    /// The fields of the file.
+    pub(super) fn to_fields(&self) -> Map<String, Json> {
         let mut root = Map::from_iter([("tyndall".to_owned(), VERSION.into())]);
         root.extend(write::fields(self));
-        write::pretty(&Json::Object(root))
+        root
     }
 
     /// The node of this name, or of `group/inner`.
@@ -268,6 +268,13 @@ impl Node {
             Some(inside) => inside.varies(catalog),
             None => catalog.find(&self.type_id).is_some_and(|spec| Params::vary(spec.params, &self.params)),
         }
+    }
+}
+
+fn object(json: Json) -> Result<Map<String, Json>, DocumentError> {
+    match json {
+        Json::Object(fields) => Ok(fields),
+        other => Err(DocumentError::Form(vec![form("the graph", &other, "an object")])),
     }
 }
 
