@@ -181,6 +181,8 @@ mod tests {
         let mut document = document();
         assert_eq!(document.duplicate(&strings(&["sum"]), [1.0, 1.0]).unwrap(), ["sum_3"]);
         assert_eq!(wires(&document)[3..], ["one.light -> sum_3.lights"]);
+        document.duplicate(&strings(&["sum", "sum_2"]), [1.0, 1.0]).unwrap();
+        assert_eq!(wires(&document)[4..], ["sum_4.light -> sum_5.lights", "one.light -> sum_4.lights"]);
         assert!(document.duplicate(&strings(&["nobody"]), [0.0; 2]).is_err());
     }
 }
