@@ -60,7 +60,7 @@ fn type_may_stand_anywhere_and_order_is_kept() {
     let document = Document::parse(text, Path::new("")).unwrap();
     let params: Vec<&str> = document.nodes["b"].params.keys().map(String::as_str).collect();
     assert_eq!(params, ["z", "a"]);
-    assert_eq!(document.node_names(), "b, a");
+    assert_eq!(document.paths().join(", "), "b, a");
     let again = Document::parse(&document.to_json(), Path::new("")).unwrap();
     assert_eq!(again, document);
 }
@@ -135,7 +135,8 @@ fn every_field_says_its_form() {
     assert_eq!(error(r#"{"tyndall": 1}"#), "the field \"nodes\" is missing; write \"nodes\": {}");
     assert_eq!(
         error_in(r#""nodes": {}, "wire": [], "about": 3, "wires": {}, "layout": []"#),
-        "unknown field 'wire'; did you mean 'wires'? allowed are tyndall, about, nodes, wires, layout\n\
+        "unknown field 'wire'; did you mean 'wires'? allowed are tyndall, about, nodes, \
+         wires, layout, bends, frames, inputs, outputs\n\
          about is 3; write a string\n\
          wires is {}; write a list of wires\n\
          layout is []; write an object of [x, y]"
