@@ -155,7 +155,14 @@ struct NodeHost<'a> {
 
 impl<'a> NodeHost<'a> {
     fn new(gpu: &'a Gpu, prune: bool) -> Self {
-        Self { gpu, shaders: shader_hash(), prune, foretells: false, recalls: false, gpu_ms: RefCell::default() }
+        Self {
+            gpu,
+            shaders: shader_hash(),
+            prune,
+            foretells: false,
+            recalls: false,
+            gpu_ms: RefCell::default(),
+        }
     }
 }
 

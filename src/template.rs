@@ -17,6 +17,7 @@ use glam::{DMat4, DVec3, IVec3};
 use serde_json::json;
 
 use crate::graph::Document;
+use crate::nodes::catalog;
 use crate::volume::sequence::{Playback, Sequence};
 use crate::volume::stats::{Figures, Sample};
 use crate::volume::vdb::{File, GridType};
@@ -98,7 +99,8 @@ pub enum TemplateError {
 pub fn presets() -> Option<PathBuf> {
     let program = std::env::current_exe().ok();
     let above = program.iter().flat_map(|program| program.ancestors().skip(1).map(Path::to_owned));
-    let mut places = above.chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]).map(|place| place.join("graphs"));
+    let mut places =
+        above.chain([PathBuf::from(env!("CARGO_MANIFEST_DIR"))]).map(|place| place.join("graphs"));
     places.find(|graphs| graphs.join("cumulus.json").is_file())
 }
 
@@ -121,7 +123,8 @@ pub fn measure(path: &Path, as_sequence: bool) -> Result<VolumeFigures, Template
     for name in names {
         let Ok(grid) = file.read(name) else { continue };
         let figures = Figures::of(&grid);
-        let (Some(Sample::Scalar(mean)), Some(min), Some(max)) = (figures.mean, figures.bbox_min, figures.bbox_max)
+        let (Some(Sample::Scalar(mean)), Some(min), Some(max)) =
+            (figures.mean, figures.bbox_min, figures.bbox_max)
         else {
             continue;
         };
@@ -179,9 +182,15 @@ pub fn fit(mut document: Document, volume: &VolumeFigures) -> Result<Document, T
     let [low, high] = volume.bounds;
     let shortest = (high - low).min_element();
     let density_scale = three_digits(TAU / (volume.mean * shortest));
-    let loader = document.nodes.iter().find(|(_, node)| node.type_id == "load_vdb").map(|(name, _)| name.clone());
+    let loader =
+        document.nodes.iter().find(|(_, node)| node.type_id == "load_vdb").map(|(name, _)| name.clone());
     let loader = loader.ok_or(TemplateError::NoLoader)?;
-    let media: Vec<String> = document.wires.iter().filter(|wire| wire.from.node == loader).map(|wire| wire.to.node.clone()).collect();
+    let media: Vec<String> = document
+        .wires
+        .iter()
+        .filter(|wire| wire.from.node == loader)
+        .map(|wire| wire.to.node.clone())
+        .collect();
     for (name, node) in &mut document.nodes {
         let params = &mut node.params;
         if *name == loader {
@@ -194,7 +203,8 @@ pub fn fit(mut document: Document, volume: &VolumeFigures) -> Result<Document, T
                 params.insert("density_scale".to_owned(), json!(density_scale));
             }
             "camera" => {
-                let number = |name: &str, default: f64| params.get(name).and_then(|v| v.as_f64()).unwrap_or(default);
+                let number =
+                    |name: &str, default: f64| params.get(name).and_then(|v| v.as_f64()).unwrap_or(default);
                 let aspect = number("width", 512.0) / number("height", 512.0);
                 let (position, target) = view(volume.bounds, number("fov_y_deg", 40.0), aspect);
                 for (name, place) in [("position", position), ("look_at", target)] {
@@ -205,6 +215,15 @@ pub fn fit(mut document: Document, volume: &VolumeFigures) -> Result<Document, T
         }
     }
     Ok(document)
+}
+
+/// The graph with absolute paths, so that it can be written anywhere.
+pub fn absolute(mut document: Document) -> Document {
+    if let Ok(base) = std::path::absolute(&document.base) {
+        document.base = base;
+    }
+    document.rebase(catalog(), Path::new(""));
+    document
 }
 
 /// From where the box's sphere fills the picture, and the point to look at.

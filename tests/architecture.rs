@@ -11,7 +11,10 @@ use std::path::{Path, PathBuf};
 /// Who may name whom; each may name itself.
 const ARROWS: &[(&str, &[&str])] = &[
     ("main", &["cli", "editor"]),
-    ("editor", &["session", "template", "nodes", "planner", "graph", "gpu", "wire", "image", "volume", "camera"]),
+    (
+        "editor",
+        &["session", "template", "nodes", "planner", "graph", "gpu", "wire", "image", "volume", "camera"],
+    ),
     ("cli", &["session", "template", "nodes", "planner", "graph", "gpu", "image", "volume"]),
     ("template", &["graph", "nodes", "volume"]),
     ("session", &["nodes", "planner", "graph", "gpu"]),

@@ -51,9 +51,8 @@ fn preset(name: &str) -> anyhow::Result<Document> {
     };
     let path = folder.join(format!("{name}.json"));
     if !path.is_file() {
-        let names = std::fs::read_dir(&folder)?.filter_map(|entry| {
-            Some(entry.ok()?.path().file_stem()?.to_str()?.to_owned())
-        });
+        let names = std::fs::read_dir(&folder)?
+            .filter_map(|entry| Some(entry.ok()?.path().file_stem()?.to_str()?.to_owned()));
         let mut names: Vec<String> = names.chain(["lit".to_owned()]).collect();
         names.sort_unstable();
         let near = did_you_mean(name, names.iter().map(String::as_str));

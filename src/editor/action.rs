@@ -149,7 +149,8 @@ mod tests {
                 let (Some(key), Some(earlier)) = (spec.shortcut, other.shortcut) else { continue };
                 assert_ne!(key, earlier, "{} and {}", spec.label, other.label);
                 // One that is part of another would be taken first.
-                let hides = key.logical_key == earlier.logical_key && key.modifiers.contains(earlier.modifiers);
+                let hides =
+                    key.logical_key == earlier.logical_key && key.modifiers.contains(earlier.modifiers);
                 assert!(!hides, "{} hides {}", other.label, spec.label);
             }
         }

@@ -57,7 +57,9 @@ fn of_node(document: &Document, name: &str) -> Option<(String, End, Option<Strin
             document.nodes.contains_key(&from.node).then(|| (name.to_owned(), from, Some(name.to_owned())))
         }
         // It shows what it saves.
-        "save_image" => of_node(document, &read()?.from.node).map(|found| (name.to_owned(), found.1, found.2)),
+        "save_image" => {
+            of_node(document, &read()?.from.node).map(|found| (name.to_owned(), found.1, found.2))
+        }
         kind => {
             let spec = catalog().find(kind)?;
             let port = spec.outputs.iter().find(|port| port.kind == PortType::Image)?;
@@ -85,9 +87,12 @@ fn above<'a>(document: &'a Document, name: &'a str) -> Vec<&'a str> {
 
 /// How the picture of a tone_map is shown; without one, or with parameters that it would refuse, `other`.
 pub fn tone(document: &Document, look: &Look, other: Tone) -> Tone {
-    let Some(node) = look.tone.as_ref().and_then(|name| document.nodes.get(name)) else { return other };
+    let Some(node) = look.tone.as_ref().and_then(|name| document.node(name)) else { return other };
     let exposure_ev = node.params.get("exposure_ev").map_or(Some(0.0), |ev| ev.as_f64());
-    let curve = node.params.get("curve").map_or(Some(Curve::None), |curve| serde_json::from_value(curve.clone()).ok());
+    let curve = node
+        .params
+        .get("curve")
+        .map_or(Some(Curve::None), |curve| serde_json::from_value(curve.clone()).ok());
     match (exposure_ev, curve) {
         (Some(ev), Some(curve)) => Tone { exposure_ev: ev as f32, curve },
         _ => other,
@@ -96,7 +101,8 @@ pub fn tone(document: &Document, look: &Look, other: Tone) -> Tone {
 
 /// Nodes that are wired, give something and write nothing: what may be run only to know more of it.
 pub fn harmless(document: &Document) -> Vec<String> {
-    let is_wired = |name: &str| document.wires.iter().any(|wire| wire.from.node == name || wire.to.node == name);
+    let is_wired =
+        |name: &str| document.wires.iter().any(|wire| wire.from.node == name || wire.to.node == name);
     let nodes = document.nodes.iter().filter(|(name, node)| {
         catalog().find(&node.type_id).is_some_and(|spec| !spec.outputs.is_empty()) && is_wired(name)
     });
@@ -145,7 +151,9 @@ mod tests {
     #[test]
     fn the_tone_map_is_looked_through() {
         let document = document();
-        for (chosen, is) in [(None, "tone"), (Some("save"), "save"), (Some("tone"), "tone"), (Some("cloud"), "tone")] {
+        for (chosen, is) in
+            [(None, "tone"), (Some("save"), "save"), (Some("tone"), "tone"), (Some("cloud"), "tone")]
+        {
             let look = look(&document, chosen).unwrap();
             assert_eq!((look.chosen.as_str(), look.source.to_string().as_str()), (is, "march.image"));
             assert_eq!(look.tone.as_deref(), Some("tone"));
@@ -156,7 +164,10 @@ mod tests {
         let plain = look(&document, Some("march")).unwrap();
         assert_eq!((plain.chosen.as_str(), plain.tone), ("march", None));
         assert_eq!(look(&Document::default(), None), None);
-        assert!(!harmless(&document).contains(&"save".to_owned()) && !harmless(&document).contains(&"loose".to_owned()));
+        assert!(
+            !harmless(&document).contains(&"save".to_owned())
+                && !harmless(&document).contains(&"loose".to_owned())
+        );
     }
 
     #[test]
@@ -168,7 +179,9 @@ mod tests {
         assert_eq!(names, ["march", "medium", "save", "tone"]);
         let mut unwired = document();
         unwired.wires.retain(|wire| wire.from.node != "camera");
-        assert!(changed(&before, &unwired).contains("march") && !changed(&before, &unwired).contains("medium"));
+        assert!(
+            changed(&before, &unwired).contains("march") && !changed(&before, &unwired).contains("medium")
+        );
         assert!(changed(&before, &document()).is_empty());
     }
 }

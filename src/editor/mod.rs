@@ -17,9 +17,16 @@ mod action;
 mod app;
 mod canvas;
 mod inspector;
+mod look;
+mod panels;
+mod player;
+mod presets;
+mod preview;
 mod project;
 mod selection;
+mod settings;
 mod status;
+mod theme;
 mod viewport;
 mod worker;
 

@@ -29,7 +29,9 @@ pub fn span(document: &Document) -> Option<([i64; 2], BTreeSet<i64>)> {
         }
         let path = node.params.get("path").and_then(Json::as_str);
         let Some(path) = path.filter(|_| node.type_id == "load_vdb") else { continue };
-        let Ok(Sequence::Numbered { files, .. }) = Sequence::find(&document.base.join(path)) else { continue };
+        let Ok(Sequence::Numbered { files, .. }) = Sequence::find(&document.base.join(path)) else {
+            continue;
+        };
         let whole = |name: &str| node.params.get(name).and_then(Json::as_i64);
         let (first, last) = (*files.keys().next().unwrap_or(&0), *files.keys().next_back().unwrap_or(&0));
         let start = whole("first_frame").unwrap_or(first);
@@ -142,7 +144,9 @@ mod tests {
             std::fs::write(folder.path().join(format!("a_{number:04}.vdb")), "").unwrap();
         }
         let text = |params: &str| {
-            format!(r#"{{"tyndall": 1, "nodes": {{"a": {{"type": "load_vdb", "path": "a_####.vdb"{params}}}}}, "wires": []}}"#)
+            format!(
+                r#"{{"tyndall": 1, "nodes": {{"a": {{"type": "load_vdb", "path": "a_####.vdb"{params}}}}}, "wires": []}}"#
+            )
         };
         let span_of = |text: &str| span(&Document::parse(text, folder.path()).unwrap());
         assert_eq!(span_of(&text("")), Some(([3, 7], [5, 6].into())));

@@ -58,7 +58,9 @@ impl Preset {
         let size = [info.width as usize, info.height as usize];
         match info.color_type {
             png::ColorType::Rgb => Some(egui::ColorImage::from_rgb(size, &bytes[..info.buffer_size()])),
-            png::ColorType::Rgba => Some(egui::ColorImage::from_rgba_unmultiplied(size, &bytes[..info.buffer_size()])),
+            png::ColorType::Rgba => {
+                Some(egui::ColorImage::from_rgba_unmultiplied(size, &bytes[..info.buffer_size()]))
+            }
             _ => None,
         }
     }

@@ -122,7 +122,10 @@ mod tests {
         assert_eq!(Settings::load(Some(&file)), settings);
         // Of an older or newer version: what is not there has its default.
         std::fs::write(&file, r#"{"theme": "light", "unknown": 1, "scale": 40}"#).unwrap();
-        assert_eq!(Settings::load(Some(&file)), Settings { theme: ThemeChoice::Light, ..Settings::default() });
+        assert_eq!(
+            Settings::load(Some(&file)),
+            Settings { theme: ThemeChoice::Light, ..Settings::default() }
+        );
         std::fs::write(&file, "{").unwrap();
         assert_eq!(Settings::load(Some(&file)), Settings::default());
     }

@@ -6,8 +6,6 @@ use egui::{Color32, Context, CornerRadius, Stroke, Theme, ThemePreference, Visua
 pub const ACCENT: Color32 = Color32::from_rgb(86, 146, 214);
 /// What failed.
 pub const BAD: Color32 = Color32::from_rgb(226, 102, 92);
-/// What runs or is not what it will be.
-pub const BUSY: Color32 = Color32::from_rgb(214, 168, 78);
 
 /// Sets both themes, and which of them is used.
 pub fn apply(context: &Context, preference: ThemePreference) {

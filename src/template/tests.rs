@@ -2,7 +2,6 @@
 
 use super::*;
 use crate::graph::{Target, check};
-use crate::nodes::catalog;
 use crate::volume::grid::Grid;
 use crate::volume::vdb::{WriteOptions, write};
 

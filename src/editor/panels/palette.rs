@@ -44,11 +44,15 @@ impl Palette {
         *mark = (*mark).min(lines.len().saturating_sub(1));
         let (enter, escape) = (step(Key::Enter), step(Key::Escape));
         let mut chosen = enter.then(|| lines.get(*mark).map(|line| line.choice.clone())).flatten();
-        let area = Area::new(Id::new("palette")).order(Order::Foreground).anchor(Align2::CENTER_TOP, vec2(0.0, 80.0));
+        let area = Area::new(Id::new("palette"))
+            .order(Order::Foreground)
+            .anchor(Align2::CENTER_TOP, vec2(0.0, 80.0));
         let shown = area.show(&context, |ui| {
             Frame::popup(ui.style()).inner_margin(10.0).show(ui, |ui| {
                 ui.set_width(440.0);
-                let field = TextEdit::singleline(query).hint_text("What do you want to do?").desired_width(f32::INFINITY);
+                let field = TextEdit::singleline(query)
+                    .hint_text("What do you want to do?")
+                    .desired_width(f32::INFINITY);
                 let field = ui.add(field);
                 field.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::TextEdit, true, "Command"));
                 field.request_focus();
@@ -100,7 +104,8 @@ fn lines(query: &str, possible: Possible, presets: &[Preset]) -> Vec<Line> {
     let actions = ACTIONS.iter().filter(|spec| possible.is(spec.action) && spec.action != Action::Palette);
     let actions = actions.filter_map(|spec| line(spec.label.to_owned(), Choice::Action(spec.action)));
     let presets = presets.iter().enumerate();
-    let presets = presets.filter_map(|(idx, preset)| line(format!("Open preset {}", preset.name), Choice::Preset(idx)));
+    let presets =
+        presets.filter_map(|(idx, preset)| line(format!("Open preset {}", preset.name), Choice::Preset(idx)));
     let mut lines: Vec<Line> = actions.chain(presets).collect();
     // Stable: what fits equally well stays in the order of the table.
     lines.sort_by_key(|line| -line.score);

@@ -25,7 +25,9 @@ pub fn show(ui: &Ui, open: &mut bool) {
                     for menu in column {
                         ui.strong(*menu);
                         Grid::new(("keys", menu)).num_columns(2).min_col_width(120.0).show(ui, |ui| {
-                            for spec in ACTIONS.iter().filter(|spec| spec.menu == *menu && spec.shortcut.is_some()) {
+                            for spec in
+                                ACTIONS.iter().filter(|spec| spec.menu == *menu && spec.shortcut.is_some())
+                            {
                                 ui.label(spec.label);
                                 ui.monospace(key_text(ui.ctx(), spec));
                                 ui.end_row();

@@ -3,7 +3,10 @@
 use std::collections::HashMap;
 use std::path::PathBuf;
 
-use egui::{Align, Color32, Layout, Rect, RichText, ScrollArea, Sense, TextureHandle, Ui, Vec2, WidgetInfo, WidgetType, vec2};
+use egui::{
+    Align, Color32, Layout, Rect, RichText, ScrollArea, Sense, TextureHandle, Ui, Vec2, WidgetInfo,
+    WidgetType, vec2,
+};
 
 use crate::editor::action::Action;
 use crate::editor::presets::Preset;
@@ -97,7 +100,8 @@ impl Start {
             None => drop(painter.rect_filled(top, 6.0, ui.visuals().extreme_bg_color)),
         }
         let below = Rect::from_min_max(top.left_bottom(), rect.max).shrink2(vec2(10.0, 6.0));
-        let mut text = ui.new_child(egui::UiBuilder::new().max_rect(below).layout(Layout::top_down(Align::Min)));
+        let mut text =
+            ui.new_child(egui::UiBuilder::new().max_rect(below).layout(Layout::top_down(Align::Min)));
         text.spacing_mut().item_spacing.y = 1.0;
         text.label(RichText::new(&preset.name).strong());
         text.add(egui::Label::new(RichText::new(&preset.about).weak().size(11.0)).truncate());

@@ -44,7 +44,11 @@ pub fn show(ui: &mut Ui, figures: &Figures) -> bool {
             let [done, all] = figures.progress;
             ui.label(format!("{name}  {done}/{all}"));
         } else if figures.n_failed > 0 {
-            let nodes = if figures.n_failed == 1 { "1 node failed".to_owned() } else { format!("{} nodes failed", figures.n_failed) };
+            let nodes = if figures.n_failed == 1 {
+                "1 node failed".to_owned()
+            } else {
+                format!("{} nodes failed", figures.n_failed)
+            };
             ui.label(RichText::new(nodes).color(theme::BAD));
         } else {
             ui.weak("Ready");
@@ -56,12 +60,14 @@ pub fn show(ui: &mut Ui, figures: &Figures) -> bool {
                 None => ui.weak("opening the device …"),
             };
             ui.weak(format!("GPU {}", bytes(figures.gpu_bytes))).on_hover_text("Held on the device");
-            ui.weak(format!("cache {}", bytes(figures.cache_bytes))).on_hover_text("Results that need not be computed again");
+            ui.weak(format!("cache {}", bytes(figures.cache_bytes)))
+                .on_hover_text("Results that need not be computed again");
             if let Some(ms) = figures.picture_ms {
                 ui.weak(format!("picture {}", time(ms))).on_hover_text("Time of the last whole picture");
             }
             if let Some(ms) = figures.preview_ms {
-                ui.weak(format!("{:.1}/s", 1e3 / ms.max(1e-3))).on_hover_text("Pictures a second while dragging");
+                ui.weak(format!("{:.1}/s", 1e3 / ms.max(1e-3)))
+                    .on_hover_text("Pictures a second while dragging");
             }
         });
     });

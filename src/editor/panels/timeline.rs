@@ -20,7 +20,8 @@ pub fn show(ui: &mut Ui, player: &mut Player, fps: &mut f64) {
             player.go_to(frame);
         }
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            let rate = ui.add(DragValue::new(fps).range(1.0..=240.0).speed(0.1).max_decimals(3).suffix(" fps"));
+            let rate =
+                ui.add(DragValue::new(fps).range(1.0..=240.0).speed(0.1).max_decimals(3).suffix(" fps"));
             rate.widget_info(|| WidgetInfo::labeled(WidgetType::DragValue, true, "Frames a second"));
             ui.checkbox(&mut player.loops, "Loop");
             let [first, last] = &mut player.range;
@@ -44,7 +45,7 @@ fn strip(ui: &mut Ui, player: &mut Player) {
     let step = (rect.width() / n_frames).max(1.0);
     let painter = ui.painter();
     painter.rect_filled(rect, 3.0, ui.visuals().extreme_bg_color);
-    let mut mark = |frame: &i64, color| {
+    let mark = |frame: &i64, color| {
         let at = pos2(x(*frame), rect.bottom() - 6.0);
         painter.rect_filled(Rect::from_min_size(at, vec2(step, 6.0)), 0.0, color);
     };

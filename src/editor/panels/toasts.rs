@@ -38,7 +38,9 @@ impl Toasts {
         }
         self.0.retain(|toast| toast.until.is_none_or(|until| now < until));
         let mut clicked = None;
-        let area = Area::new(Id::new("toasts")).order(Order::Foreground).anchor(Align2::RIGHT_BOTTOM, vec2(-14.0, -36.0));
+        let area = Area::new(Id::new("toasts"))
+            .order(Order::Foreground)
+            .anchor(Align2::RIGHT_BOTTOM, vec2(-14.0, -36.0));
         area.show(ui.ctx(), |ui| {
             for (idx, toast) in self.0.iter().enumerate() {
                 let edge = if toast.is_error { theme::BAD } else { theme::ACCENT };
@@ -47,7 +49,8 @@ impl Toasts {
                     ui.set_max_width(420.0);
                     ui.horizontal_top(|ui| {
                         ui.add(egui::Label::new(&toast.text).wrap());
-                        let close = egui::Button::new("×").fill(Color32::TRANSPARENT).frame_when_inactive(false);
+                        let close =
+                            egui::Button::new("×").fill(Color32::TRANSPARENT).frame_when_inactive(false);
                         if toast.is_error && ui.add(close).on_hover_text("Dismiss").clicked() {
                             clicked = Some(idx);
                         }

@@ -22,7 +22,8 @@ pub fn show(ui: &Ui, name: &str) -> Option<Answer> {
         ui.label(format!("'{name}' has changes that are in no file yet."));
         ui.add_space(12.0);
         ui.horizontal(|ui| {
-            let answers = [("Save", Answer::Save), ("Do not save", Answer::Discard), ("Cancel", Answer::Stay)];
+            let answers =
+                [("Save", Answer::Save), ("Do not save", Answer::Discard), ("Cancel", Answer::Stay)];
             let clicked = answers.into_iter().filter(|(label, _)| ui.button(*label).clicked());
             clicked.last().map(|(_, answer)| answer)
         })

@@ -7,6 +7,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::graph::{Document, DocumentError};
+use crate::image::atomic::{self, WriteError};
+use crate::nodes::catalog;
 
 /// A graph and its history.
 #[derive(Debug, Default)]
@@ -102,6 +104,20 @@ impl Project {
         let back = self.swap(step);
         self.undo.push(back);
         Some(label)
+    }
+
+    /// Writes the graph to a file, which is its own from now on.
+    ///
+    /// # Errors
+    /// Where the file cannot be written; the one that is there stays as it was.
+    pub fn save_as(&mut self, path: &Path) -> Result<(), WriteError> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        self.document.rebase(catalog(), &std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned()));
+        atomic::write(path, self.document.to_json().as_bytes())?;
+        self.saved = Some(self.document.clone());
+        self.file = Some(path.to_owned());
+        self.revision += 1;
+        Ok(())
     }
 
     /// Whether a step can be taken back.

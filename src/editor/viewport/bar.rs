@@ -11,7 +11,13 @@ use crate::image::{BEAUTY, Image};
 const CURVES: [(Curve, &str); 3] = [(Curve::None, "none"), (Curve::Filmic, "filmic"), (Curve::Aces, "aces")];
 
 /// Draws the strip.
-pub fn show(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, scene: &Scene, image: Option<&Image>) {
+pub fn show(
+    viewport: &mut Viewport,
+    ui: &mut Ui,
+    project: &mut Project,
+    scene: &Scene,
+    image: Option<&Image>,
+) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 8.0;
         if let Some(look) = scene.look {
@@ -19,7 +25,9 @@ pub fn show(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, scene: 
             layers(viewport, ui, image);
             tone(viewport, ui, project, look);
         }
-        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| places(viewport, ui, project, scene));
+        ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+            places(viewport, ui, project, scene)
+        });
     });
     ui.add_space(2.0);
 }
@@ -42,11 +50,10 @@ fn layers(viewport: &mut Viewport, ui: &mut Ui, image: Option<&Image>) {
 fn tone(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, look: &look::Look) {
     let before = look::tone(project.document(), look, viewport.tone);
     let mut tone = before;
-    let drag = DragValue::new(&mut tone.exposure_ev).speed(0.02).range(-16.0..=16.0).max_decimals(2).suffix(" EV");
+    let drag =
+        DragValue::new(&mut tone.exposure_ev).speed(0.02).range(-16.0..=16.0).max_decimals(2).suffix(" EV");
     let response = ui.add(drag).on_hover_text("Exposure: one more is twice as bright");
-    response.widget_info(|| {
-        egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "Exposure")
-    });
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "Exposure"));
     let name = CURVES.iter().find(|(curve, _)| *curve == tone.curve).map_or("", |(_, name)| name);
     ComboBox::from_id_salt("curve").selected_text(name).width(64.0).show_ui(ui, |ui| {
         for (curve, name) in CURVES {
@@ -56,10 +63,11 @@ fn tone(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, look: &look
     if tone != before {
         match &look.tone {
             Some(node) => project.edit_during(Id::new("exposure"), "change the exposure", |document| {
-                if let Some(node) = document.nodes.get_mut(node) {
+                if let Some(node) = document.node_mut(node) {
                     // f32 to f64 by its shortest text, so that the file says 0.1.
                     let ev: f64 = tone.exposure_ev.to_string().parse().unwrap_or_default();
-                    let curve = CURVES.iter().find(|(curve, _)| *curve == tone.curve).map_or("none", |found| found.1);
+                    let curve =
+                        CURVES.iter().find(|(curve, _)| *curve == tone.curve).map_or("none", |found| found.1);
                     node.params.insert("exposure_ev".to_owned(), ev.into());
                     node.params.insert("curve".to_owned(), curve.into());
                 }
@@ -87,7 +95,9 @@ fn places(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, scene: &S
         ui.weak(format!("{percent:.0} %"));
     }
     ui.toggle_value(&mut viewport.shows_histogram, "Histogram");
-    ui.menu_button("Wipe", |ui| wipe(viewport, ui, scene)).response.on_hover_text("Compare with another picture");
+    ui.menu_button("Wipe", |ui| wipe(viewport, ui, scene))
+        .response
+        .on_hover_text("Compare with another picture");
 }
 
 fn wipe(viewport: &mut Viewport, ui: &mut Ui, scene: &Scene) {
@@ -106,7 +116,8 @@ fn wipe(viewport: &mut Viewport, ui: &mut Ui, scene: &Scene) {
         });
     }
     let shown = scene.look.map(|look| look.source.node.as_str());
-    let mut others: Vec<&String> = scene.pictures.keys().filter(|name| Some(name.as_str()) != shown).collect();
+    let mut others: Vec<&String> =
+        scene.pictures.keys().filter(|name| Some(name.as_str()) != shown).collect();
     others.sort_unstable();
     for name in others {
         ui.radio_value(&mut viewport.wipe, Wipe::Node(name.clone()), format!("With {name}"));

@@ -40,7 +40,8 @@ pub fn develop(image: &Image, layer: &str, tone: Tone) -> Option<ColorImage> {
     let mut pixels = vec![Color32::BLACK; image.width * image.height];
     match data.channels {
         3 => pixels.par_iter_mut().zip(data.data.par_chunks_exact(3)).for_each(|(pixel, rgb)| {
-            let [r, g, b] = tonemap::apply([rgb[0], rgb[1], rgb[2]], tone.exposure_ev, tone.curve).map(signal);
+            let [r, g, b] =
+                tonemap::apply([rgb[0], rgb[1], rgb[2]], tone.exposure_ev, tone.curve).map(signal);
             *pixel = Color32::from_rgb(r, g, b);
         }),
         _ => {
@@ -84,7 +85,8 @@ impl Histogram {
         let n_bins = Self::STOPS * Self::BINS_A_STOP;
         let mut found = Self { counts: vec![0; n_bins], n_black: 0, n_odd: 0 };
         for pixel in layer.data.chunks_exact(layer.channels) {
-            let value = if layer.channels == 3 { luminance([pixel[0], pixel[1], pixel[2]]) } else { pixel[0] };
+            let value =
+                if layer.channels == 3 { luminance([pixel[0], pixel[1], pixel[2]]) } else { pixel[0] };
             if !value.is_finite() {
                 found.n_odd += 1;
             } else if value <= 0.0 {

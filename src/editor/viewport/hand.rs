@@ -62,8 +62,8 @@ pub fn take(
     let Some(camera) = scene.camera else { return };
     let share = f64::from(1.0 / rect.height().max(1.0));
     let [x, y] = [f64::from(delta.x) * share, f64::from(delta.y) * share];
-    let pans = response.dragged_by(PointerButton::Middle)
-        || (shift && response.dragged_by(PointerButton::Primary));
+    let pans =
+        response.dragged_by(PointerButton::Middle) || (shift && response.dragged_by(PointerButton::Primary));
     if pans {
         write(project, scene, Some("pan"), "pan", eye::pan(camera, -x, y));
     } else if response.dragged_by(PointerButton::Primary) && delta != egui::Vec2::ZERO {
@@ -91,7 +91,7 @@ pub fn take(
 pub fn write(project: &mut Project, scene: &Scene, gesture: Option<&str>, label: &str, camera: Camera) {
     let Some(name) = scene.look.and_then(|look| look.camera.clone()) else { return };
     let change = |document: &mut crate::graph::Document| {
-        if let Some(node) = document.nodes.get_mut(&name) {
+        if let Some(node) = document.node_mut(&name) {
             for (param, place) in [("position", camera.position), ("look_at", camera.look_at)] {
                 node.params.insert(param.to_owned(), json(place));
             }
@@ -107,11 +107,6 @@ pub fn write(project: &mut Project, scene: &Scene, gesture: Option<&str>, label:
 fn json(v: DVec3) -> Json {
     let short = |x: f64| format!("{x:.6e}").parse::<f64>().unwrap_or(x);
     json!([short(v.x), short(v.y), short(v.z)])
-}
-
-/// For the bar's buttons.
-pub fn zoom(viewport: &mut Viewport, area: Rect, size: [usize; 2], factor: f32) {
-    viewport.place = viewport.place.zoomed(area, size, area.center(), factor);
 }
 
 /// Percent of a pixel that a point is, for the bar.

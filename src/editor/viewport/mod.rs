@@ -27,8 +27,8 @@ use crate::camera::Camera;
 use crate::graph::Value;
 use crate::image::{BEAUTY, Image};
 
-pub use display::Tone;
 use display::Histogram;
+pub use display::Tone;
 use place::Place;
 
 /// A picture that came to be.

@@ -3,9 +3,9 @@
 use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
 use glam::DVec3;
 
+use super::Scene;
 use super::display::{Histogram, luminance};
 use super::place::{length_text, lower_left, pixel_at, round_length};
-use super::Scene;
 use crate::camera::Camera;
 use crate::image::{DEPTH, Image};
 
@@ -32,7 +32,8 @@ pub fn placeholder(ui: &mut Ui, area: Rect, scene: &Scene) {
         (_, true) => "The first picture is on its way …",
         (_, false) => "No picture yet.",
     };
-    let mut place = ui.new_child(egui::UiBuilder::new().max_rect(Rect::from_center_size(area.center(), vec2(420.0, 60.0))));
+    let mut place = ui
+        .new_child(egui::UiBuilder::new().max_rect(Rect::from_center_size(area.center(), vec2(420.0, 60.0))));
     place.vertical_centered(|ui| ui.label(egui::RichText::new(text).size(14.0).weak()));
 }
 
@@ -47,7 +48,11 @@ pub fn problem(ui: &mut Ui, area: Rect, name: &str, message: &str) {
         .inner_margin(12.0)
         .show(&mut place, |ui| {
             ui.set_width(width - 24.0);
-            ui.label(egui::RichText::new(format!("{name} failed")).strong().color(Color32::from_rgb(255, 180, 170)));
+            ui.label(
+                egui::RichText::new(format!("{name} failed"))
+                    .strong()
+                    .color(Color32::from_rgb(255, 180, 170)),
+            );
             ui.label(egui::RichText::new(message).color(INK));
         });
 }
@@ -59,11 +64,14 @@ pub fn refining(ui: &Ui, area: Rect) {
 
 /// Scale bar at the target's distance, and the world's axes.
 pub fn guides(ui: &Ui, area: Rect, rect: Rect, camera: Option<Camera>) {
-    let Some((camera, Ok([forward, right, up]))) = camera.map(|camera| (camera, camera.frame())) else { return };
+    let Some((camera, Ok([forward, right, up]))) = camera.map(|camera| (camera, camera.frame())) else {
+        return;
+    };
     let painter = ui.painter().with_clip_rect(area);
     let corner = lower_left(rect.intersect(area)) + vec2(34.0, -34.0);
     let (right_unit, up_unit) = (right.normalize(), up.normalize());
-    let mut axes = [(DVec3::X, "x", (236, 104, 96)), (DVec3::Y, "y", (126, 200, 110)), (DVec3::Z, "z", (104, 156, 240))];
+    let mut axes =
+        [(DVec3::X, "x", (236, 104, 96)), (DVec3::Y, "y", (126, 200, 110)), (DVec3::Z, "z", (104, 156, 240))];
     // The nearest last, over the others.
     axes.sort_by(|a, b| b.0.dot(forward).total_cmp(&a.0.dot(forward)));
     for (axis, name, (r, g, b)) in axes {
@@ -84,18 +92,34 @@ pub fn guides(ui: &Ui, area: Rect, rect: Rect, camera: Option<Camera>) {
             painter.line_segment([at + vec2(x, -4.0), at + vec2(x, 4.0)], line);
         }
         let text = length_text(length_m);
-        painter.text(at + vec2(0.5 * length, -5.0), Align2::CENTER_BOTTOM, text, FontId::proportional(11.0), INK);
+        painter.text(
+            at + vec2(0.5 * length, -5.0),
+            Align2::CENTER_BOTTOM,
+            text,
+            FontId::proportional(11.0),
+            INK,
+        );
     }
 }
 
 /// Radiance, luminance, depth and place of the pixel under the cursor.
-pub fn readout(ui: &Ui, area: Rect, rect: Rect, at: Pos2, image: &Image, camera: Option<Camera>, layer: &str) {
+pub fn readout(
+    ui: &Ui,
+    area: Rect,
+    rect: Rect,
+    at: Pos2,
+    image: &Image,
+    camera: Option<Camera>,
+    layer: &str,
+) {
     let Some([x, y]) = pixel_at(rect, [image.width, image.height], at) else { return };
     let idx = y * image.width + x;
     let Some(shown) = image.layers.get(layer) else { return };
     let of = &shown.data[idx * shown.channels..][..shown.channels];
     let mut text = match *of {
-        [r, g, b] => format!("{layer} {} {} {}   Y {}", short(r), short(g), short(b), short(luminance([r, g, b]))),
+        [r, g, b] => {
+            format!("{layer} {} {} {}   Y {}", short(r), short(g), short(b), short(luminance([r, g, b])))
+        }
         [v] => format!("{layer} {}", short(v)),
         _ => return,
     };
@@ -136,7 +160,8 @@ pub fn histogram(ui: &Ui, area: Rect, histogram: &Histogram, layer: &str) {
         // The root, so that a sky does not hide the rest.
         let height = (count as f32 / largest).sqrt() * inside.height();
         let x = inside.left() + idx as f32 * step;
-        let bar = Rect::from_min_max(pos2(x, inside.bottom() - height), pos2(x + step * 0.9, inside.bottom()));
+        let bar =
+            Rect::from_min_max(pos2(x, inside.bottom() - height), pos2(x + step * 0.9, inside.bottom()));
         painter.rect_filled(bar, 0.0, Color32::from_rgb(150, 180, 215));
     }
     let one = inside.left() - Histogram::LOWEST / Histogram::STOPS as f32 * inside.width();

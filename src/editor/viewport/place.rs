@@ -67,7 +67,11 @@ pub fn round_length(longest: f64) -> f64 {
         return 0.0;
     }
     let power = 10_f64.powf(longest.log10().floor());
-    [5.0, 2.0, 1.0].into_iter().map(|n| n * power).find(|length| *length <= longest * (1.0 + 1e-9)).unwrap_or(power)
+    [5.0, 2.0, 1.0]
+        .into_iter()
+        .map(|n| n * power)
+        .find(|length| *length <= longest * (1.0 + 1e-9))
+        .unwrap_or(power)
 }
 
 /// With the unit that needs the fewest digits.
@@ -123,7 +127,9 @@ mod tests {
 
     #[test]
     fn lengths_are_round() {
-        for (longest, length) in [(7.3, 5.0), (4.9, 2.0), (1.0, 1.0), (0.199, 0.1), (1234.0, 1000.0), (50.0, 50.0)] {
+        for (longest, length) in
+            [(7.3, 5.0), (4.9, 2.0), (1.0, 1.0), (0.199, 0.1), (1234.0, 1000.0), (50.0, 50.0)]
+        {
             assert!((round_length(longest) / length - 1.0).abs() < 1e-12, "{longest}");
         }
         assert_eq!((round_length(0.0), round_length(f64::NAN)), (0.0, 0.0));
