@@ -6,11 +6,11 @@ use egui_kittest::kittest::Queryable;
 use super::*;
 
 fn harness() -> Harness<'static, App> {
-    Harness::builder().with_size([1280.0, 800.0]).build_eframe(|context| {
-        let mut app = App::new(&context.egui_ctx, None, &AdapterChoice::Named("no such adapter".to_owned()));
-        app.settings = Settings::default();
-        app
-    })
+    let adapter = AdapterChoice::Named("no such adapter".to_owned());
+    let mut app = App::new(&egui::Context::default(), None, &adapter);
+    app.settings = Settings::default();
+    let draw = |ui: &mut Ui, app: &mut App| eframe::App::ui(app, ui, &mut eframe::Frame::_new_kittest());
+    Harness::builder().with_size([1280.0, 800.0]).build_ui_state(draw, app)
 }
 
 #[test]
