@@ -106,8 +106,10 @@ impl App {
                         {
                             self.figures.picture_ms = Some(wall_ms);
                         }
-                        false => self.figures.preview_ms = Some(wall_ms),
-                        true => {}
+                        false if self.asked.as_ref().is_some_and(|asked| asked.is_drag) => {
+                            self.figures.preview_ms = Some(wall_ms);
+                        }
+                        _ => {}
                     }
                     if let Some(frame) = self.asked.as_ref().and_then(|asked| asked.frame).filter(|_| is_last)
                     {

@@ -17,7 +17,11 @@ use super::action::{Action, ActionSpec};
 
 /// A key as people write it: "Ctrl+Z".
 fn key_text(context: &Context, spec: &ActionSpec) -> String {
-    spec.shortcut.map(|shortcut| context.format_shortcut(&shortcut)).unwrap_or_default()
+    let text = spec.shortcut.map(|shortcut| context.format_shortcut(&shortcut)).unwrap_or_default();
+    // egui writes keys by their names.
+    [("Questionmark", "?"), ("Equals", "="), ("Minus", "-")]
+        .into_iter()
+        .fold(text, |text, (name, sign)| text.replace(name, sign))
 }
 
 /// Whether an action can be asked for now, by what is open.

@@ -29,7 +29,7 @@ pub struct Start {
     pictures: HashMap<String, Option<TextureHandle>>,
 }
 
-const CARD: Vec2 = vec2(224.0, 180.0);
+const CARD: Vec2 = vec2(224.0, 186.0);
 
 impl Start {
     /// Draws the page.
@@ -104,7 +104,7 @@ impl Start {
             ui.new_child(egui::UiBuilder::new().max_rect(below).layout(Layout::top_down(Align::Min)));
         text.spacing_mut().item_spacing.y = 1.0;
         text.label(RichText::new(&preset.name).strong());
-        text.add(egui::Label::new(RichText::new(&preset.about).weak().size(11.0)).truncate());
+        text.add(egui::Label::new(RichText::new(&preset.about).weak().size(11.0)).wrap());
         if lit {
             ui.painter().rect_stroke(rect, 6.0, (1.5, theme::ACCENT), egui::StrokeKind::Outside);
         }
