@@ -106,6 +106,17 @@ vulkan_works() {
     return 1
 }
 
+has_display() { [ "$(uname)" != Linux ] || [ -n "${DISPLAY:-}${WAYLAND_DISPLAY:-}" ]; }
+
+# Libraries that a window on Linux loads when it opens, as Debian packages and the files that they are for.
+window_packages() {
+    local package
+    [ "$(uname)" = Linux ] || return 0
+    for package in libxcursor1:libXcursor.so.1 libxi6:libXi.so.6 libxkbcommon-x11-0:libxkbcommon-x11.so.0; do
+        PATH="$PATH:/sbin" ldconfig -p | grep "${package#*:}" >/dev/null || printf '%s\n' "${package%%:*}"
+    done
+}
+
 # The Vulkan loader wants a folder of the user's own.
 ensure_runtime_dir() {
     [ -z "${XDG_RUNTIME_DIR:-}" ] || return 0
@@ -115,8 +126,9 @@ ensure_runtime_dir() {
 }
 
 # Names all that is missing before it installs any of it.
+# set_up [window] [window_tests]
 set_up() {
-    local packages=() rust=found
+    local packages=() rust=found want package
     say "looking for a C linker, Rust $(rust_wanted) and a Vulkan driver"
     if ! linker_works; then
         [ "$(uname)" != Darwin ] || fail "no C linker; type: xcode-select --install"
@@ -138,6 +150,16 @@ set_up() {
         say "missing: a Vulkan driver; Mesa's lavapipe needs no GPU"
         packages+=(mesa-vulkan-drivers)
     fi
+
+    for want in "$@"; do
+        for package in $(window_packages); do
+            say "missing: $package, which the window loads"
+            packages+=("$package")
+        done
+        [ "$want" = window_tests ] || continue
+        has Xvfb || packages+=(xvfb)
+        has xdotool || packages+=(xdotool)
+    done
 
     [ "${#packages[@]}" = 0 ] || install_packages "${packages[@]}"
     [ "$rust" = found ] || install_rust

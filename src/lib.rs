@@ -13,6 +13,7 @@ pub mod nodes;
 pub mod optics;
 pub mod planner;
 pub mod session;
+pub mod template;
 pub mod volume;
 pub mod wire;
 

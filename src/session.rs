@@ -85,6 +85,19 @@ impl Session {
         self.cache.clear();
     }
 
+    /// What its results hold now on CPU and GPU together, in bytes.
+    pub fn cached_bytes(&self) -> u64 {
+        self.cache.used_bytes()
+    }
+
+    /// What of `target` is there already. Nothing runs: a node that would have to has failed in what is
+    /// answered, and what reads it is skipped.
+    pub fn recall(&mut self, document: &Document, target: Target) -> Evaluation {
+        let plan = Plan::new(document, nodes::catalog(), target);
+        let host = NodeHost { recalls: true, ..NodeHost::new(&self.gpu, self.prune) };
+        evaluate(&plan, &host, &mut self.cache, &CancelToken::new(), &mut |_| {})
+    }
+
     /// Runs what `target` needs; results that are still valid are taken from the cache. The document
     /// should have been checked: a node with a problem fails, and what does not depend on it goes on.
     pub fn solve(
@@ -135,12 +148,21 @@ struct NodeHost<'a> {
     prune: bool,
     /// Expensive nodes only say what they would do.
     foretells: bool,
+    /// Nothing runs: only what is cached is found.
+    recalls: bool,
     gpu_ms: RefCell<HashMap<String, f64>>,
 }
 
 impl<'a> NodeHost<'a> {
     fn new(gpu: &'a Gpu, prune: bool) -> Self {
-        Self { gpu, shaders: shader_hash(), prune, foretells: false, gpu_ms: RefCell::default() }
+        Self {
+            gpu,
+            shaders: shader_hash(),
+            prune,
+            foretells: false,
+            recalls: false,
+            gpu_ms: RefCell::default(),
+        }
     }
 }
 
@@ -158,6 +180,9 @@ impl Host for NodeHost<'_> {
     }
 
     fn run(&self, job: &NodeJob, inputs: &Inputs) -> Result<Outputs, NodeError> {
+        if self.recalls {
+            return Err(NodeError::new("its result is not cached"));
+        }
         let kind = nodes::kind(job.spec.id).expect("the plan holds kinds of the catalog");
         let run = Run {
             params: job.params,

@@ -11,8 +11,12 @@ use std::path::{Path, PathBuf};
 /// Who may name whom; each may name itself.
 const ARROWS: &[(&str, &[&str])] = &[
     ("main", &["cli", "editor"]),
-    ("editor", &["session", "nodes", "planner", "graph", "gpu", "image", "volume", "camera"]),
-    ("cli", &["session", "nodes", "planner", "graph", "gpu", "image", "volume"]),
+    (
+        "editor",
+        &["session", "template", "nodes", "planner", "graph", "gpu", "wire", "image", "volume", "camera"],
+    ),
+    ("cli", &["session", "template", "nodes", "planner", "graph", "gpu", "image", "volume"]),
+    ("template", &["graph", "nodes", "volume"]),
     ("session", &["nodes", "planner", "graph", "gpu"]),
     ("planner", &["graph", "wire", "light", "optics"]),
     (

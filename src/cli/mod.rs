@@ -19,6 +19,7 @@ mod doctor;
 mod explain;
 mod frames;
 mod inspect;
+mod new;
 mod nodes;
 mod output;
 mod progress;
@@ -41,6 +42,7 @@ enum Command {
     Inspect(inspect::Args),
     Compare(compare::Args),
     Nodes(nodes::Args),
+    New(new::Args),
     Doctor(doctor::Args),
     #[command(external_subcommand)]
     Other(Vec<OsString>),
@@ -65,6 +67,7 @@ pub fn main(open_editor: OpenEditor) -> ExitCode {
         Some(Command::Inspect(args)) => inspect::run(&args),
         Some(Command::Compare(args)) => compare::run(&args),
         Some(Command::Nodes(args)) => nodes::run(&args),
+        Some(Command::New(args)) => new::run(&args),
         Some(Command::Doctor(args)) => doctor::run(&args),
         Some(Command::Other(words)) => match graph(&words) {
             Some(path) => edit(Some(path)),

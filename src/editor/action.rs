@@ -7,12 +7,58 @@ use egui::{Key, KeyboardShortcut, Modifiers};
 /// What can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
+    /// The start page.
+    Start,
+    /// Asks for a graph to open.
+    Open,
+    /// Asks for a volume to light.
+    OpenVolume,
+    /// Writes the graph to its file.
+    Save,
+    /// Asks for a file to write the graph to.
+    SaveAs,
+    /// Closes the window.
+    Quit,
     /// Takes the last step back.
     Undo,
     /// Does it again.
     Redo,
-    /// Writes the graph to its file.
-    Save,
+    /// Looks for an action by its name.
+    Palette,
+    /// The whole picture in the viewport.
+    FitPicture,
+    /// A pixel for a pixel.
+    ActualSize,
+    /// Looks at the whole medium.
+    FrameMedium,
+    /// The histogram of the picture.
+    Histogram,
+    /// Keeps the picture to compare with.
+    StoreA,
+    /// Keeps another one.
+    StoreB,
+    /// Plays the sequence, or stops.
+    Play,
+    /// The frame after this one.
+    NextFrame,
+    /// The frame before this one.
+    PreviousFrame,
+    /// Larger text and controls.
+    Larger,
+    /// Smaller text and controls.
+    Smaller,
+    /// Text and controls as they were made.
+    NormalSize,
+    /// A dark window.
+    Dark,
+    /// A light window.
+    Light,
+    /// As the system has it.
+    System,
+    /// Opens the device anew and computes the picture again.
+    Retry,
+    /// The page of shortcuts.
+    Shortcuts,
 }
 
 /// An action as menus, palette and the page of shortcuts show it.
@@ -32,15 +78,51 @@ const fn key(modifiers: Modifiers, key: Key) -> Option<KeyboardShortcut> {
     Some(KeyboardShortcut::new(modifiers, key))
 }
 
+const fn spec(
+    action: Action,
+    menu: &'static str,
+    label: &'static str,
+    shortcut: Option<KeyboardShortcut>,
+) -> ActionSpec {
+    ActionSpec { action, label, menu, shortcut }
+}
+
+const NONE: Modifiers = Modifiers::NONE;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
+
+/// The menus, in their order.
+pub const MENUS: [&str; 4] = ["File", "Edit", "View", "Help"];
 
 /// All actions, in the order of their menus. A shortcut with more modifiers stands before the one with
 /// fewer, because a shortcut is taken by the first that fits.
 pub const ACTIONS: &[ActionSpec] = &[
-    ActionSpec { action: Action::Save, label: "Save", menu: "File", shortcut: key(COMMAND, Key::S) },
-    ActionSpec { action: Action::Redo, label: "Redo", menu: "Edit", shortcut: key(COMMAND_SHIFT, Key::Z) },
-    ActionSpec { action: Action::Undo, label: "Undo", menu: "Edit", shortcut: key(COMMAND, Key::Z) },
+    spec(Action::Start, "File", "Start page", key(COMMAND, Key::N)),
+    spec(Action::OpenVolume, "File", "Open a VDB…", key(COMMAND_SHIFT, Key::O)),
+    spec(Action::Open, "File", "Open a graph…", key(COMMAND, Key::O)),
+    spec(Action::SaveAs, "File", "Save as…", key(COMMAND_SHIFT, Key::S)),
+    spec(Action::Save, "File", "Save", key(COMMAND, Key::S)),
+    spec(Action::Quit, "File", "Quit", key(COMMAND, Key::Q)),
+    spec(Action::Redo, "Edit", "Redo", key(COMMAND_SHIFT, Key::Z)),
+    spec(Action::Undo, "Edit", "Undo", key(COMMAND, Key::Z)),
+    spec(Action::Palette, "View", "Command palette", key(COMMAND_SHIFT, Key::P)),
+    spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)),
+    spec(Action::ActualSize, "View", "Picture at 1:1", key(COMMAND, Key::Num1)),
+    spec(Action::FrameMedium, "View", "Frame the medium", key(COMMAND, Key::Num2)),
+    spec(Action::Histogram, "View", "Histogram", key(COMMAND, Key::H)),
+    spec(Action::StoreA, "View", "Store picture A", key(COMMAND, Key::F1)),
+    spec(Action::StoreB, "View", "Store picture B", key(COMMAND, Key::F2)),
+    spec(Action::Play, "View", "Play or stop", key(COMMAND, Key::Space)),
+    spec(Action::NextFrame, "View", "Next frame", key(COMMAND, Key::ArrowRight)),
+    spec(Action::PreviousFrame, "View", "Previous frame", key(COMMAND, Key::ArrowLeft)),
+    spec(Action::Larger, "View", "Larger interface", key(COMMAND, Key::Equals)),
+    spec(Action::Smaller, "View", "Smaller interface", key(COMMAND, Key::Minus)),
+    spec(Action::NormalSize, "View", "Normal interface", None),
+    spec(Action::Dark, "View", "Dark theme", None),
+    spec(Action::Light, "View", "Light theme", None),
+    spec(Action::System, "View", "System theme", None),
+    spec(Action::Retry, "Help", "Restart the renderer", None),
+    spec(Action::Shortcuts, "Help", "Shortcuts", key(NONE, Key::Questionmark)),
 ];
 
 /// The actions whose keys were pressed; a text field that has the keyboard keeps its own.
@@ -51,4 +133,26 @@ pub fn pressed(context: &egui::Context) -> Vec<Action> {
     let with_key = ACTIONS.iter().filter_map(|spec| Some((spec.action, spec.shortcut?)));
     let taken = with_key.filter(|(_, shortcut)| context.input_mut(|input| input.consume_shortcut(shortcut)));
     taken.map(|(action, _)| action).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_action_has_a_place_and_its_own_key() {
+        for (idx, spec) in ACTIONS.iter().enumerate() {
+            assert!(MENUS.contains(&spec.menu), "{}", spec.label);
+            for other in &ACTIONS[..idx] {
+                assert_ne!(spec.action, other.action);
+                assert_ne!(spec.label, other.label);
+                let (Some(key), Some(earlier)) = (spec.shortcut, other.shortcut) else { continue };
+                assert_ne!(key, earlier, "{} and {}", spec.label, other.label);
+                // One that is part of another would be taken first.
+                let hides =
+                    key.logical_key == earlier.logical_key && key.modifiers.contains(earlier.modifiers);
+                assert!(!hides, "{} hides {}", other.label, spec.label);
+            }
+        }
+    }
 }

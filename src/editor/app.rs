@@ -1,125 +1,291 @@
 //! The window: panels, and what passes between them.
 
+mod files;
+mod solving;
+
+use std::collections::HashMap;
+use std::path::Path;
+
+use egui::{CentralPanel, Frame, Panel, Ui};
+
 use super::action::{self, Action};
-use super::canvas::Canvas;
-use super::viewport::Viewport;
-use super::worker::Reply;
-use super::{NodeState, Project, Selection, Statuses, Worker, inspector};
+use super::canvas::{Canvas, Request};
+use super::look::{self, Look};
+use super::panels::palette::{self, Palette};
+use super::panels::start::{self, Start};
+use super::panels::status_bar::{self, Figures};
+use super::panels::toasts::Toasts;
+use super::panels::{Possible, menu, shortcuts, timeline};
+use super::player::Player;
+use super::presets::{self, Preset};
+use super::settings::{Settings, ThemeChoice};
+use super::viewport::{Picture, Scene, Viewport};
+use super::{Project, Selection, Statuses, Worker, inspector, theme};
+use crate::camera::Camera;
 use crate::gpu::AdapterChoice;
-use crate::graph::{Event, PortType, Value};
-use crate::image::Image;
+use crate::graph::{Document, flatten};
 use crate::nodes::catalog;
+use crate::template;
+use crate::volume::Lattice;
+use files::Files;
 
 /// The editor.
 pub struct App {
     project: Project,
+    /// Without a graph there is the start page.
+    is_open: bool,
     selection: Selection,
     statuses: Statuses,
     worker: Worker,
     canvas: Canvas,
     viewport: Viewport,
-    picture: Option<Value>,
-    /// The revision that was last asked for.
-    asked: Option<u64>,
+    start: Start,
+    palette: Palette,
+    toasts: Toasts,
+    player: Player,
+    files: Files,
+    figures: Figures,
+    settings: Settings,
+    presets: Vec<Preset>,
+    shows_shortcuts: bool,
+    /// The node whose picture was chosen.
+    chosen: Option<String>,
+    look: Option<Look>,
+    pictures: HashMap<String, Picture>,
+    lattice: Option<Lattice>,
+    asked: Option<solving::Asked>,
+    /// The revision that was last looked through for frames.
+    spanned: Option<u64>,
 }
 
 impl App {
     /// On a graph, or on the start page.
     pub fn new(context: &egui::Context, project: Option<Project>, adapter: &AdapterChoice) -> Self {
+        let settings = Settings::load(Settings::file().as_deref());
+        theme::apply(context, settings.theme.into());
+        context.set_zoom_factor(settings.scale);
         let waker = context.clone();
-        Self {
+        let mut app = Self {
+            is_open: project.is_some(),
             project: project.unwrap_or_default(),
             selection: Selection::default(),
             statuses: Statuses::default(),
             worker: Worker::start(adapter, move || waker.request_repaint()),
             canvas: Canvas::default(),
             viewport: Viewport::default(),
-            picture: None,
+            start: Start::default(),
+            palette: Palette::default(),
+            toasts: Toasts::default(),
+            player: Player::default(),
+            files: Files::default(),
+            figures: Figures::default(),
+            settings,
+            presets: template::presets().map(|folder| presets::list(&folder)).unwrap_or_default(),
+            shows_shortcuts: false,
+            chosen: None,
+            look: None,
+            pictures: HashMap::new(),
+            lattice: None,
             asked: None,
+            spanned: None,
+        };
+        if let Some(file) = app.project.file().map(Path::to_owned) {
+            app.settings.opened(&file);
         }
+        app
     }
 
     /// Does what was asked for.
-    pub fn perform(&mut self, action: Action) {
+    pub fn perform(&mut self, context: &egui::Context, action: Action) {
+        let now = context.input(|input| input.time);
         match action {
-            Action::Undo => drop(self.project.undo()),
-            Action::Redo => drop(self.project.redo()),
-            Action::Save => {}
+            Action::Undo => self.say_step("Undo", Project::undo),
+            Action::Redo => self.say_step("Redo", Project::redo),
+            Action::Start => self.leave_for(files::Goal::Start),
+            Action::Quit => self.leave_for(files::Goal::Quit),
+            Action::Open => self.files.ask_graph(self.settings.folder.as_deref()),
+            Action::OpenVolume => self.files.ask_volume(self.settings.folder.as_deref()),
+            Action::SaveAs => self.files.ask_save(self.settings.folder.as_deref(), &self.project),
+            Action::Save => drop(self.save()),
+            Action::Palette => self.palette.toggle(),
+            Action::Shortcuts => self.shows_shortcuts = !self.shows_shortcuts,
+            Action::FitPicture => self.viewport.fit(),
+            Action::ActualSize => self.viewport.one_to_one(context),
+            Action::Histogram => self.viewport.toggle_histogram(),
+            Action::FrameMedium => self.with_scene(|viewport, project, scene| viewport.frame(project, scene)),
+            Action::StoreA => self.with_scene(|viewport, _, scene| viewport.store(0, scene)),
+            Action::StoreB => self.with_scene(|viewport, _, scene| viewport.store(1, scene)),
+            Action::Play => self.player.toggle(now),
+            Action::NextFrame => self.player.go_to(self.player.frame.saturating_add(1)),
+            Action::PreviousFrame => self.player.go_to(self.player.frame.saturating_sub(1)),
+            Action::Larger => self.scale_to(context, self.settings.scale + 0.1),
+            Action::Smaller => self.scale_to(context, self.settings.scale - 0.1),
+            Action::NormalSize => self.scale_to(context, 1.0),
+            Action::Dark => self.theme_to(context, ThemeChoice::Dark),
+            Action::Light => self.theme_to(context, ThemeChoice::Light),
+            Action::System => self.theme_to(context, ThemeChoice::System),
+            Action::Retry => self.asked = None,
         }
     }
 
-    /// Asks for the picture of the document as it is now.
-    fn ask(&mut self) {
-        if self.asked == Some(self.project.revision()) {
-            return;
-        }
-        self.asked = Some(self.project.revision());
-        let document = self.project.document();
-        let mut givers = document.nodes.iter().filter_map(|(name, node)| {
-            let spec = catalog().find(&node.type_id)?;
-            let image = spec.outputs.iter().find(|port| port.kind == PortType::Image)?;
-            Some((name.clone(), image.name))
-        });
-        if let Some((name, port)) = givers.next_back() {
-            self.worker.solve(document, &name, port);
+    fn say_step(&mut self, word: &str, step: impl FnOnce(&mut Project) -> Option<String>) {
+        if let Some(label) = step(&mut self.project) {
+            self.toasts.say(format!("{word}: {label}"));
         }
     }
 
-    fn listen(&mut self) {
-        for reply in self.worker.replies() {
-            match reply {
-                Reply::Event(event) => self.note(event),
-                Reply::Solved { value, costs } => {
-                    for cost in costs {
-                        self.statuses.entry(cost.name).or_default().gpu_ms = cost.gpu_ms;
-                    }
-                    self.picture = value.or(self.picture.take());
-                }
-                Reply::NoDevice(_) => {}
-            }
+    fn scale_to(&mut self, context: &egui::Context, scale: f32) {
+        self.settings.scale = ((scale * 10.0).round() / 10.0).clamp(0.5, 3.0);
+        context.set_zoom_factor(self.settings.scale);
+    }
+
+    fn theme_to(&mut self, context: &egui::Context, choice: ThemeChoice) {
+        self.settings.theme = choice;
+        theme::apply(context, choice.into());
+    }
+
+    fn possible(&self) -> Possible {
+        Possible {
+            graph: self.is_open,
+            undo: self.is_open && self.project.can_undo(),
+            redo: self.is_open && self.project.can_redo(),
+            frames: self.has_frames(),
         }
     }
 
-    fn note(&mut self, event: Event) {
-        let (Event::Started { name }
-        | Event::Finished { name, .. }
-        | Event::Failed { name, .. }
-        | Event::Skipped { name, .. }) = &event
-        else {
-            return;
+    fn has_frames(&self) -> bool {
+        self.is_open && self.player.range[1] > self.player.range[0]
+    }
+
+    /// Calls `body` with what the viewport shows.
+    fn with_scene(&mut self, body: impl FnOnce(&mut Viewport, &mut Project, &Scene)) {
+        let camera =
+            self.look.as_ref().and_then(|look| camera_of(self.project.document(), look.camera.as_ref()?));
+        let scene = Scene {
+            look: self.look.as_ref(),
+            pictures: &self.pictures,
+            camera,
+            bounds: self.lattice.as_ref().map(solving::bounds),
+            problem: self.problem(),
+            is_busy: self.figures.running.is_some() || self.figures.adapter.is_none(),
         };
-        let status = self.statuses.entry(name.clone()).or_default();
-        match event {
-            Event::Started { .. } => status.state = NodeState::Running,
-            Event::Finished { cached, cpu_ms, bytes, report, .. } => {
-                (status.state, status.cached, status.bytes, status.report) =
-                    (NodeState::Done, cached, bytes, report);
-                if !cached {
-                    status.cpu_ms = cpu_ms;
-                }
-            }
-            Event::Failed { message, .. } => status.state = NodeState::Failed(message),
-            Event::Skipped { because, .. } => status.state = NodeState::Skipped(because),
-            Event::Cancelled => {}
+        body(&mut self.viewport, &mut self.project, &scene);
+    }
+
+    fn follow_frames(&mut self, ui: &Ui) {
+        if self.spanned != Some(self.project.revision()) {
+            self.spanned = Some(self.project.revision());
+            let (range, missing) = super::player::span(self.project.document()).unwrap_or_default();
+            self.player.set_span(range, missing);
+        }
+        self.player.advance(ui.input(|input| input.time), self.settings.fps);
+        if self.player.is_playing() {
+            ui.ctx().request_repaint_after_secs((0.5 / self.settings.fps) as f32);
         }
     }
+
+    fn page(&mut self, ui: &mut Ui) {
+        let choice = self.start.show(ui, &self.presets, &self.settings.recent);
+        match choice {
+            Some(start::Choice::Preset(idx)) => self.open_preset(idx),
+            Some(start::Choice::Recent(path)) => self.open(&path),
+            Some(start::Choice::Action(action)) => self.perform(&ui.ctx().clone(), action),
+            None => {}
+        }
+    }
+
+    fn editor(&mut self, ui: &mut Ui) {
+        if self.has_frames() {
+            Panel::bottom("timeline").show(ui, |ui| {
+                timeline::show(ui, &mut self.player, &mut self.settings.fps);
+            });
+        }
+        let width = self.settings.inspector_width;
+        let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
+        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection));
+        self.settings.inspector_width = shown.response.rect.width();
+        let height = self.settings.canvas_height;
+        let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
+        let shown = panel
+            .frame(Frame::new())
+            .show(ui, |ui| self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses));
+        self.settings.canvas_height = shown.response.rect.height();
+        for request in shown.inner {
+            match request {
+                Request::Show(name) => self.chosen = Some(name),
+            }
+        }
+        let frame = Frame::central_panel(ui.style()).inner_margin(6.0);
+        CentralPanel::default().frame(frame).show(ui, |ui| {
+            self.with_scene(|viewport, project, scene| viewport.show(ui, project, scene));
+        });
+    }
+}
+
+/// The camera as its node says it; `None` where its parameters are not plain numbers.
+fn camera_of(document: &Document, name: &str) -> Option<Camera> {
+    let node = document.node(name)?;
+    let spec = catalog().find(&node.type_id)?;
+    let params =
+        crate::graph::Params::resolve(spec.params, &node.params, &document.base, Default::default()).ok()?;
+    // What moves with the frame is not moved by hand.
+    if node.params.values().any(serde_json::Value::is_object) {
+        return None;
+    }
+    Some(Camera {
+        position: glam::DVec3::from_array(params.vec("position")),
+        look_at: glam::DVec3::from_array(params.vec("look_at")),
+        up: glam::DVec3::from_array(params.vec("up")),
+        fov_y_deg: params.f64("fov_y_deg"),
+        width: params.i64("width") as usize,
+        height: params.i64("height") as usize,
+    })
 }
 
 impl eframe::App for App {
-    fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
+    fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
+        let context = ui.ctx().clone();
         self.listen();
-        for action in action::pressed(ui.ctx()) {
-            self.perform(action);
+        for action in action::pressed(&context) {
+            if self.possible().is(action) {
+                self.perform(&context, action);
+            }
         }
-        egui::Panel::right("inspector").default_size(300.0).show(ui, |ui| {
-            inspector::show(ui, &mut self.project, &self.selection);
-        });
-        egui::Panel::bottom("canvas").resizable(true).default_size(360.0).show(ui, |ui| {
-            self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses);
-        });
-        egui::CentralPanel::default().show(ui, |ui| {
-            self.viewport.show(ui, self.picture.as_ref().map(|value| value.get::<Image>()));
-        });
-        self.ask();
+        self.follow_frames(ui);
+        self.look = if self.is_open {
+            look::look(&flatten(self.project.document(), catalog()), self.chosen.as_deref())
+        } else {
+            None
+        };
+        let title = self.title();
+        let asked = Panel::top("menu").show(ui, |ui| menu::show(ui, self.possible(), &title)).inner;
+        asked.into_iter().for_each(|action| self.perform(&context, action));
+        let retries = Panel::bottom("status").show(ui, |ui| status_bar::show(ui, &self.figures)).inner;
+        if retries {
+            self.perform(&context, Action::Retry);
+        }
+        if self.is_open {
+            self.editor(ui);
+        } else {
+            CentralPanel::default().show(ui, |ui| self.page(ui));
+        }
+        match self.palette.show(ui, self.possible(), &self.presets) {
+            Some(palette::Choice::Action(action)) => self.perform(&context, action),
+            Some(palette::Choice::Preset(idx)) => self.open_preset(idx),
+            None => {}
+        }
+        shortcuts::show(ui, &mut self.shows_shortcuts);
+        self.files(ui);
+        self.toasts.show(ui);
+        if self.is_open {
+            self.ask(&context);
+        }
+    }
+
+    fn on_exit(&mut self) {
+        self.settings.save(Settings::file().as_deref());
     }
 }
+
+#[cfg(test)]
+mod tests;

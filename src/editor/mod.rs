@@ -17,15 +17,23 @@ mod action;
 mod app;
 mod canvas;
 mod inspector;
+mod look;
+mod panels;
+mod player;
+mod presets;
+mod preview;
 mod project;
 mod selection;
+mod settings;
 mod status;
+mod theme;
 mod viewport;
 mod worker;
 
 use std::path::Path;
 
 use crate::gpu::{AdapterChoice, adapters};
+use crate::template;
 
 pub use action::{ACTIONS, Action, ActionSpec};
 pub use app::App;
@@ -43,14 +51,20 @@ pub enum EditorError {
     /// The graph that was to be opened.
     #[error(transparent)]
     Graph(#[from] crate::graph::DocumentError),
+    /// The volume that was to be lit.
+    #[error(transparent)]
+    Volume(#[from] template::TemplateError),
 }
 
-/// Opens the window, on a graph or on the start page, and stays until it is closed.
+/// Opens the window, on a graph, on a graph for a volume, or on the start page, and stays until it is closed.
 ///
 /// # Errors
-/// Without a display or a driver, and for a graph that cannot be read.
+/// Without a display or a driver, and for a graph or a volume that cannot be read.
 pub fn open(graph: Option<&Path>, adapter: &AdapterChoice) -> Result<(), EditorError> {
     let project = match graph {
+        Some(path) if path.extension().is_some_and(|ending| ending == "vdb") || path.is_dir() => {
+            Some(Project::new(template::new_graph(&template::measure(path, true)?)))
+        }
         Some(path) => Some(Project::load(path)?),
         None => None,
     };

@@ -30,6 +30,9 @@ pub use record::{Recorder, StageTime};
 pub use shader::{Shader, shader_names, shader_text};
 pub use stage::{Bind, Bound, Stage};
 
+/// How the message of [`GpuError::OutOfMemory`] begins, by which it is known where only messages arrive.
+pub const OUT_OF_MEMORY: &str = "the GPU is out of memory";
+
 /// What the GPU layer can refuse or meet.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum GpuError {
@@ -50,7 +53,7 @@ pub enum GpuError {
     },
     /// The device ran out of memory.
     #[error(
-        "the GPU is out of memory ({in_use_mib} MiB in use by Tyndall): lower medium.max_resolution or medium.max_cells, or use --adapter cpu"
+        "{OUT_OF_MEMORY} ({in_use_mib} MiB in use by Tyndall): lower medium.max_resolution or medium.max_cells, or use --adapter cpu"
     )]
     OutOfMemory {
         /// Bytes that Tyndall held, in MiB.

@@ -1,0 +1,291 @@
+//! Opening and saving: dialogs, dropped files, presets, and the question before work is lost.
+
+use std::path::{Path, PathBuf};
+
+use egui::{Ui, ViewportCommand};
+use egui_file_dialog::{DialogState, FileDialog, Filter};
+
+use super::App;
+use crate::editor::panels::unsaved::{self, Answer};
+use crate::editor::{Project, Selection, Statuses};
+use crate::template;
+
+/// What a dialog is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Purpose {
+    Graph,
+    Volume,
+    Save,
+}
+
+/// What comes after the question whether to save.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Goal {
+    /// The start page.
+    Start,
+    /// The end.
+    Quit,
+    /// A graph or volume.
+    Open(PathBuf),
+    /// A preset by its place in the list.
+    Preset(usize),
+}
+
+/// What is being asked.
+#[derive(Default)]
+pub struct Files {
+    dialog: Option<(FileDialog, Purpose)>,
+    /// What waits for the answer whether to save.
+    waiting: Option<Goal>,
+    /// Saving was asked for on the way to this goal.
+    after_save: Option<Goal>,
+    may_close: bool,
+    /// The title that the window has.
+    title: String,
+}
+
+fn dialog(title: &str, folder: Option<&Path>) -> FileDialog {
+    let dialog = FileDialog::new().title(title);
+    match folder.filter(|folder| folder.is_dir()) {
+        Some(folder) => dialog.initial_directory(folder.to_owned()),
+        None => dialog,
+    }
+}
+
+impl Files {
+    /// Asks for a graph.
+    pub fn ask_graph(&mut self, folder: Option<&Path>) {
+        let is_graph = |path: &Path| path.extension().is_some_and(|ending| ending == "json");
+        let mut dialog = dialog("Open a graph", folder)
+            .add_file_filter("Graphs", Filter::new(is_graph))
+            .default_file_filter("Graphs");
+        dialog.pick_file();
+        self.dialog = Some((dialog, Purpose::Graph));
+    }
+
+    /// Asks for a volume.
+    pub fn ask_volume(&mut self, folder: Option<&Path>) {
+        let is_volume = |path: &Path| path.extension().is_some_and(|ending| ending == "vdb");
+        let mut dialog = dialog("Open a VDB", folder)
+            .add_file_filter("OpenVDB", Filter::new(is_volume))
+            .default_file_filter("OpenVDB");
+        dialog.pick_file();
+        self.dialog = Some((dialog, Purpose::Volume));
+    }
+
+    /// Asks where to save.
+    pub fn ask_save(&mut self, folder: Option<&Path>, project: &Project) {
+        let folder = project.file().and_then(Path::parent).or(folder);
+        let name = project.file().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let mut dialog =
+            dialog("Save the graph", folder).default_file_name(&name.unwrap_or("graph.json".to_owned()));
+        dialog.save_file();
+        self.dialog = Some((dialog, Purpose::Save));
+    }
+}
+
+impl App {
+    /// Name of the graph, with a mark where it is in no file.
+    pub(super) fn title(&self) -> String {
+        if !self.is_open {
+            return String::new();
+        }
+        let mark = if self.project.is_unsaved() { " •" } else { "" };
+        self.name() + mark
+    }
+
+    fn name(&self) -> String {
+        let name = self.project.file().and_then(Path::file_name);
+        name.map_or("untitled".to_owned(), |name| name.to_string_lossy().into_owned())
+    }
+
+    /// Goes on to something else, but asks first where work would be lost.
+    pub(super) fn leave_for(&mut self, goal: Goal) {
+        match self.is_open && self.project.is_unsaved() {
+            true => self.files.waiting = Some(goal),
+            false => self.go(goal),
+        }
+    }
+
+    fn go(&mut self, goal: Goal) {
+        match goal {
+            Goal::Start => self.is_open = false,
+            Goal::Quit => self.files.may_close = true,
+            Goal::Open(path) => self.open_now(&path),
+            Goal::Preset(idx) => self.open_preset_now(idx),
+        }
+    }
+
+    /// Opens a graph, or a graph for a volume.
+    pub(super) fn open(&mut self, path: &Path) {
+        self.leave_for(Goal::Open(path.to_owned()));
+    }
+
+    /// Opens a copy of a preset.
+    pub(super) fn open_preset(&mut self, idx: usize) {
+        self.leave_for(Goal::Preset(idx));
+    }
+
+    fn open_now(&mut self, path: &Path) {
+        let folder = if path.is_dir() { Some(path) } else { path.parent() };
+        self.settings.folder = folder.map(|folder| std::path::absolute(folder).unwrap_or(folder.to_owned()));
+        if path.extension().is_some_and(|ending| ending == "json") {
+            match Project::load(path) {
+                Ok(project) => {
+                    self.settings.opened(path);
+                    self.show(project);
+                }
+                Err(error) => self.toasts.complain(format!("{}: {error}", path.display())),
+            }
+            return;
+        }
+        match template::measure(path, true) {
+            Ok(volume) => {
+                let document = template::new_graph(&volume);
+                let scale = document.nodes["medium"].params["density_scale"].clone();
+                self.toasts.say(format!(
+                    "Grid '{}', density scale {scale}: {} optical depths through the middle",
+                    volume.grid,
+                    template::TAU
+                ));
+                self.show(Project::new(document));
+            }
+            Err(error) => self.toasts.complain(error),
+        }
+    }
+
+    fn open_preset_now(&mut self, idx: usize) {
+        let Some(preset) = self.presets.get(idx) else { return };
+        match preset.open() {
+            Ok(document) => self.show(Project::new(template::absolute(document))),
+            Err(error) => self.toasts.complain(error),
+        }
+    }
+
+    /// Another graph: nothing of the one before is left.
+    fn show(&mut self, project: Project) {
+        self.project = project;
+        self.is_open = true;
+        self.selection = Selection::default();
+        self.statuses = Statuses::default();
+        self.canvas = Default::default();
+        self.viewport.fit();
+        self.pictures.clear();
+        (self.chosen, self.look, self.lattice, self.asked, self.spanned) = (None, None, None, None, None);
+        self.player = Default::default();
+    }
+
+    /// Saves to the graph's file, or asks for one; whether it was saved.
+    pub(super) fn save(&mut self) -> bool {
+        match self.project.file().map(Path::to_owned) {
+            Some(file) => self.save_to(&file),
+            None => {
+                self.files.ask_save(self.settings.folder.as_deref(), &self.project);
+                false
+            }
+        }
+    }
+
+    fn save_to(&mut self, path: &Path) -> bool {
+        let path = if path.extension().is_none() { path.with_extension("json") } else { path.to_owned() };
+        match self.project.save_as(&path) {
+            Ok(()) => {
+                self.settings.opened(&path);
+                self.toasts.say(format!("Saved {}", path.display()));
+                true
+            }
+            Err(error) => {
+                self.toasts.complain(error);
+                false
+            }
+        }
+    }
+
+    /// Dialogs, dropped files, and the closing of the window.
+    pub(super) fn files(&mut self, ui: &Ui) {
+        self.dialogs(ui);
+        let dropped =
+            ui.ctx().input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_owned()));
+        if let Some(path) = dropped {
+            self.open(&path);
+        }
+        if !ui.ctx().input(|input| input.raw.hovered_files.is_empty()) {
+            drop_here(ui);
+        }
+        self.question(ui);
+        if ui.ctx().input(|input| input.viewport().close_requested()) && !self.files.may_close {
+            if self.is_open && self.project.is_unsaved() {
+                ui.ctx().send_viewport_cmd(ViewportCommand::CancelClose);
+                self.files.waiting = Some(Goal::Quit);
+            } else {
+                self.files.may_close = true;
+            }
+        }
+        if self.files.may_close {
+            ui.ctx().send_viewport_cmd(ViewportCommand::Close);
+        }
+        let title = if self.is_open { format!("{} – Tyndall", self.title()) } else { "Tyndall".to_owned() };
+        if title != self.files.title {
+            ui.ctx().send_viewport_cmd(ViewportCommand::Title(title.clone()));
+            self.files.title = title;
+        }
+    }
+
+    fn dialogs(&mut self, ui: &Ui) {
+        let Some((dialog, purpose)) = &mut self.files.dialog else { return };
+        dialog.update(ui.ctx());
+        let purpose = *purpose;
+        if let Some(path) = dialog.take_picked() {
+            self.files.dialog = None;
+            match purpose {
+                Purpose::Save => {
+                    let saved = self.save_to(&path);
+                    if let Some(goal) = self.files.after_save.take().filter(|_| saved) {
+                        self.go(goal);
+                    }
+                }
+                Purpose::Graph | Purpose::Volume => self.open(&path),
+            }
+        } else if !matches!(dialog.state(), DialogState::Open) {
+            self.files.dialog = None;
+            self.files.after_save = None;
+        }
+    }
+
+    fn question(&mut self, ui: &Ui) {
+        let Some(goal) = self.files.waiting.clone() else { return };
+        let Some(answer) = unsaved::show(ui, &self.name()) else { return };
+        self.files.waiting = None;
+        match answer {
+            Answer::Stay => {}
+            Answer::Discard => self.go(goal),
+            Answer::Save => match self.project.file().is_some() {
+                true => {
+                    if self.save() {
+                        self.go(goal);
+                    }
+                }
+                false => {
+                    self.save();
+                    self.files.after_save = Some(goal);
+                }
+            },
+        }
+    }
+
+    /// The graph that is open, for tests.
+    #[cfg(test)]
+    pub(super) fn document(&self) -> &crate::graph::Document {
+        self.project.document()
+    }
+}
+
+/// Says what dropping does.
+fn drop_here(ui: &Ui) {
+    let painter = ui.ctx().layer_painter(egui::LayerId::new(egui::Order::Foreground, egui::Id::new("drop")));
+    let rect = ui.ctx().content_rect();
+    painter.rect_filled(rect, 0.0, egui::Color32::from_black_alpha(170));
+    let font = egui::FontId::proportional(20.0);
+    let text = "Drop a volume to light it, or a graph to open it";
+    painter.text(rect.center(), egui::Align2::CENTER_CENTER, text, font, egui::Color32::WHITE);
+}

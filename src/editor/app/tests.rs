@@ -1,0 +1,114 @@
+//! The window without a window: by AccessKit names.
+
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use super::*;
+
+fn harness() -> Harness<'static, App> {
+    let adapter = AdapterChoice::Named("no such adapter".to_owned());
+    let mut app = App::new(&egui::Context::default(), None, &adapter);
+    app.settings = Settings::default();
+    let draw = |ui: &mut Ui, app: &mut App| eframe::App::ui(app, ui, &mut eframe::Frame::_new_kittest());
+    Harness::builder().with_size([1280.0, 800.0]).build_ui_state(draw, app)
+}
+
+#[test]
+fn a_preset_opens_as_an_unsaved_copy() {
+    let mut harness = harness();
+    harness.run_steps(3);
+    harness.get_by_label("Preset cumulus").click();
+    harness.run_steps(3);
+    let app = harness.state();
+    assert!(app.is_open && app.project.is_unsaved() && app.project.file().is_none());
+    assert_eq!(app.document().nodes["medium"].params["g"], 0.85);
+    // Wherever it is saved, its files are found.
+    assert!(app.document().nodes["cloud"].params["path"].as_str().is_some_and(|path| path.starts_with('/')));
+    // Leaving it asks.
+    harness.get_by_label("File").click();
+    harness.run_steps(2);
+    harness.get_by_label_contains("Start page").click();
+    harness.run_steps(2);
+    harness.get_by_label("Cancel").click();
+    harness.run_steps(2);
+    assert!(harness.state().is_open);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::N);
+    harness.run_steps(2);
+    harness.get_by_label("Do not save").click();
+    harness.run_steps(2);
+    assert!(!harness.state().is_open);
+}
+
+#[test]
+fn the_palette_finds_and_runs() {
+    let mut harness = harness();
+    harness.run_steps(3);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND | egui::Modifiers::SHIFT, egui::Key::P);
+    harness.run_steps(2);
+    for letter in ["s", "m", "o", "k", "e"] {
+        harness.event(egui::Event::Text(letter.to_owned()));
+        harness.step();
+    }
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.state().is_open);
+    assert!(
+        harness.state().document().about.contains("smoke")
+            || harness.state().document().nodes.contains_key("smoke")
+    );
+}
+
+#[test]
+fn a_drag_on_the_picture_is_one_step() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.get_by_label("Preset fog_sphere").click();
+    harness.run_steps(3);
+    {
+        // No adapter: a picture from elsewhere, as the worker would give it.
+        let app = harness.state_mut();
+        let source = app.look.as_ref().unwrap().source.node.clone();
+        let image = crate::image::Image::new(16, 9, vec![0.5; 16 * 9 * 3]);
+        let value = crate::graph::Value::new(crate::graph::PortType::Image, 0, image);
+        app.pictures.insert(source, Picture { value, level: super::super::preview::Level::FULL });
+    }
+    harness.run_steps(2);
+    let place = |harness: &Harness<App>| {
+        let app = harness.state();
+        camera_of(app.document(), app.look.as_ref().unwrap().camera.as_ref().unwrap()).unwrap()
+    };
+    let before = place(&harness);
+    let at = harness.get_by_label("Picture").rect().center();
+    harness.hover_at(at);
+    harness.step();
+    harness.drag_at(at);
+    harness.step();
+    for n in 1..6 {
+        harness.hover_at(at + egui::vec2(12.0 * n as f32, 4.0));
+        harness.step();
+    }
+    harness.drop_at(at + egui::vec2(60.0, 4.0));
+    harness.run_steps(2);
+    let after = place(&harness);
+    assert!(before.position.distance(after.position) > 0.01);
+    // Numbers are written with seven digits.
+    let distance = |camera: Camera| camera.position.distance(camera.look_at);
+    assert!((distance(before) / distance(after) - 1.0).abs() < 1e-5);
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
+    harness.run_steps(2);
+    assert_eq!(place(&harness), before);
+    assert!(!harness.state().project.can_undo());
+}
+
+#[test]
+fn shortcuts_and_themes() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Questionmark);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("Double-click a node").is_some());
+    let context = harness.ctx.clone();
+    harness.state_mut().perform(&context, Action::Light);
+    harness.run_steps(2);
+    assert!(!harness.ctx.global_style().visuals.dark_mode);
+}

@@ -1,0 +1,100 @@
+//! The line at the bottom: what runs, what it costs, on which device, and what is wrong with it.
+
+use egui::{Align, Layout, RichText, Ui};
+
+use crate::editor::theme;
+
+/// What the bar shows.
+#[derive(Debug, Clone, Default)]
+pub struct Figures {
+    /// Name of the device.
+    pub adapter: Option<String>,
+    /// The node that runs.
+    pub running: Option<String>,
+    /// Nodes that are done, and all that are needed.
+    pub progress: [usize; 2],
+    /// Of the last whole picture, in ms.
+    pub picture_ms: Option<f64>,
+    /// Of the last picture while something was dragged, in ms.
+    pub preview_ms: Option<f64>,
+    /// On the device, in bytes.
+    pub gpu_bytes: u64,
+    /// In the cache, in bytes.
+    pub cache_bytes: u64,
+    /// What is wrong with the device, and whether it is tried again by itself.
+    pub trouble: Option<(String, bool)>,
+    /// Nodes that failed.
+    pub n_failed: usize,
+}
+
+/// Draws the bar; says whether to try again.
+pub fn show(ui: &mut Ui, figures: &Figures) -> bool {
+    let mut retries = false;
+    ui.horizontal(|ui| {
+        ui.spacing_mut().item_spacing.x = 10.0;
+        if let Some((message, by_itself)) = &figures.trouble {
+            ui.label(RichText::new(message).color(theme::BAD));
+            if *by_itself {
+                ui.weak("starting again …");
+            } else {
+                retries = ui.button("Try again").clicked();
+            }
+        } else if let Some(name) = &figures.running {
+            ui.add(egui::Spinner::new().size(12.0));
+            let [done, all] = figures.progress;
+            ui.label(format!("{name}  {done}/{all}"));
+        } else if figures.n_failed > 0 {
+            let nodes = if figures.n_failed == 1 {
+                "1 node failed".to_owned()
+            } else {
+                format!("{} nodes failed", figures.n_failed)
+            };
+            ui.label(RichText::new(nodes).color(theme::BAD));
+        } else {
+            ui.weak("Ready");
+        }
+        ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+            ui.spacing_mut().item_spacing.x = 14.0;
+            match &figures.adapter {
+                Some(name) => ui.weak(name),
+                None => ui.weak("opening the device …"),
+            };
+            ui.weak(format!("GPU {}", bytes(figures.gpu_bytes))).on_hover_text("Held on the device");
+            ui.weak(format!("cache {}", bytes(figures.cache_bytes)))
+                .on_hover_text("Results that need not be computed again");
+            if let Some(ms) = figures.picture_ms {
+                ui.weak(format!("picture {}", time(ms))).on_hover_text("Time of the last whole picture");
+            }
+            if let Some(ms) = figures.preview_ms {
+                ui.weak(format!("{:.1}/s", 1e3 / ms.max(1e-3)))
+                    .on_hover_text("Pictures a second while dragging");
+            }
+        });
+    });
+    retries
+}
+
+/// With a unit that leaves three digits.
+pub fn time(ms: f64) -> String {
+    match ms {
+        ms if ms < 10.0 => format!("{ms:.1} ms"),
+        ms if ms < 1000.0 => format!("{ms:.0} ms"),
+        ms => format!("{:.1} s", ms / 1e3),
+    }
+}
+
+fn bytes(n: u64) -> String {
+    let mib = n as f64 / (1 << 20) as f64;
+    if mib < 1024.0 { format!("{mib:.0} MiB") } else { format!("{:.1} GiB", mib / 1024.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn figures_are_short() {
+        assert_eq!([time(4.25), time(42.0), time(4200.0)], ["4.2 ms", "42 ms", "4.2 s"]);
+        assert_eq!([bytes(5 << 20), bytes(3 << 30)], ["5 MiB", "3.0 GiB"]);
+    }
+}

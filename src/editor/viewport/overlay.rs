@@ -1,0 +1,176 @@
+//! What is drawn over the picture: scale bar, axes, value under the cursor, histogram, messages.
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
+use glam::DVec3;
+
+use super::Scene;
+use super::display::{Histogram, luminance};
+use super::place::{length_text, lower_left, pixel_at, round_length};
+use crate::camera::Camera;
+use crate::image::{DEPTH, Image};
+
+const INK: Color32 = Color32::from_rgb(235, 238, 242);
+const SHADE: Color32 = Color32::from_black_alpha(150);
+
+/// A line of text on a dark pill.
+fn pill(ui: &Ui, at: Pos2, anchor: Align2, text: &str, ink: Color32) -> Rect {
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::monospace(11.5), ink);
+    let rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 8.0));
+    ui.painter().rect_filled(rect, 4.0, SHADE);
+    ui.painter().galley(rect.min + vec2(7.0, 4.0), galley, ink);
+    rect
+}
+
+/// Where there is no picture: what to do, or why.
+pub fn placeholder(ui: &mut Ui, area: Rect, scene: &Scene) {
+    if let Some((name, message)) = &scene.problem {
+        problem(ui, area, name, message);
+        return;
+    }
+    let text = match (scene.look, scene.is_busy) {
+        (None, _) => "No node gives a picture yet. Add a raymarch, and wire a medium and a camera to it.",
+        (_, true) => "The first picture is on its way …",
+        (_, false) => "No picture yet.",
+    };
+    let mut place = ui
+        .new_child(egui::UiBuilder::new().max_rect(Rect::from_center_size(area.center(), vec2(420.0, 60.0))));
+    place.vertical_centered(|ui| ui.label(egui::RichText::new(text).size(14.0).weak()));
+}
+
+/// A node that failed, in plain words.
+pub fn problem(ui: &mut Ui, area: Rect, name: &str, message: &str) {
+    let width = (area.width() - 40.0).clamp(120.0, 560.0);
+    let at = Rect::from_min_size(pos2(area.center().x - 0.5 * width, area.top() + 16.0), vec2(width, 10.0));
+    let mut place = ui.new_child(egui::UiBuilder::new().max_rect(at));
+    egui::Frame::new()
+        .fill(Color32::from_rgba_unmultiplied(64, 26, 28, 235))
+        .corner_radius(6.0)
+        .inner_margin(12.0)
+        .show(&mut place, |ui| {
+            ui.set_width(width - 24.0);
+            ui.label(
+                egui::RichText::new(format!("{name} failed"))
+                    .strong()
+                    .color(Color32::from_rgb(255, 180, 170)),
+            );
+            ui.label(egui::RichText::new(message).color(INK));
+        });
+}
+
+/// The picture is a preview.
+pub fn refining(ui: &Ui, area: Rect) {
+    pill(ui, area.right_top() + vec2(-10.0, 10.0), Align2::RIGHT_TOP, "refining …", INK);
+}
+
+/// Scale bar at the target's distance, and the world's axes.
+pub fn guides(ui: &Ui, area: Rect, rect: Rect, camera: Option<Camera>) {
+    let Some((camera, Ok([forward, right, up]))) = camera.map(|camera| (camera, camera.frame())) else {
+        return;
+    };
+    let painter = ui.painter().with_clip_rect(area);
+    let corner = lower_left(rect.intersect(area)) + vec2(34.0, -34.0);
+    let (right_unit, up_unit) = (right.normalize(), up.normalize());
+    let mut axes =
+        [(DVec3::X, "x", (236, 104, 96)), (DVec3::Y, "y", (126, 200, 110)), (DVec3::Z, "z", (104, 156, 240))];
+    // The nearest last, over the others.
+    axes.sort_by(|a, b| b.0.dot(forward).total_cmp(&a.0.dot(forward)));
+    for (axis, name, (r, g, b)) in axes {
+        let way = vec2(axis.dot(right_unit) as f32, -axis.dot(up_unit) as f32) * 20.0;
+        let color = Color32::from_rgb(r, g, b);
+        painter.line_segment([corner, corner + way], Stroke::new(2.0, color));
+        painter.text(corner + way * 1.35, Align2::CENTER_CENTER, name, FontId::proportional(11.0), color);
+    }
+    let height_m = 2.0 * up.length() * camera.position.distance(camera.look_at);
+    let points_per_m = f64::from(rect.height()) / height_m;
+    let length_m = round_length(110.0 / points_per_m);
+    let length = (length_m * points_per_m) as f32;
+    if length > 4.0 {
+        let at = corner + vec2(52.0, 18.0);
+        let line = Stroke::new(1.5, INK);
+        painter.line_segment([at, at + vec2(length, 0.0)], line);
+        for x in [0.0, length] {
+            painter.line_segment([at + vec2(x, -4.0), at + vec2(x, 4.0)], line);
+        }
+        let text = length_text(length_m);
+        painter.text(
+            at + vec2(0.5 * length, -5.0),
+            Align2::CENTER_BOTTOM,
+            text,
+            FontId::proportional(11.0),
+            INK,
+        );
+    }
+}
+
+/// Radiance, luminance, depth and place of the pixel under the cursor.
+pub fn readout(
+    ui: &Ui,
+    area: Rect,
+    rect: Rect,
+    at: Pos2,
+    image: &Image,
+    camera: Option<Camera>,
+    layer: &str,
+) {
+    let Some([x, y]) = pixel_at(rect, [image.width, image.height], at) else { return };
+    let idx = y * image.width + x;
+    let Some(shown) = image.layers.get(layer) else { return };
+    let of = &shown.data[idx * shown.channels..][..shown.channels];
+    let mut text = match *of {
+        [r, g, b] => {
+            format!("{layer} {} {} {}   Y {}", short(r), short(g), short(b), short(luminance([r, g, b])))
+        }
+        [v] => format!("{layer} {}", short(v)),
+        _ => return,
+    };
+    let depth = image.layers.get(DEPTH).map_or(0.0, |depth| depth.data[idx]);
+    if depth > 0.0 {
+        text += &format!("   depth {} m", short(depth));
+        if let Some((camera, Ok([forward, right, up]))) = camera.map(|camera| (camera, camera.frame())) {
+            let share = (at - rect.min) / rect.size();
+            let [x, y] = [2.0 * f64::from(share.x) - 1.0, 1.0 - 2.0 * f64::from(share.y)];
+            let p = camera.position + (forward + right * x + up * y).normalize() * f64::from(depth);
+            text += &format!("   at {} {} {} m", short(p.x as f32), short(p.y as f32), short(p.z as f32));
+        }
+    }
+    pill(ui, area.right_bottom() + vec2(-10.0, -10.0), Align2::RIGHT_BOTTOM, &text, INK);
+}
+
+/// Four digits.
+fn short(x: f32) -> String {
+    match x.abs() {
+        a if a == 0.0 || (1e-3..1e5).contains(&a) => {
+            let digits = (3.0 - a.max(1e-3).log10().floor()).clamp(0.0, 6.0) as usize;
+            format!("{x:.digits$}")
+        }
+        _ => format!("{x:.3e}"),
+    }
+}
+
+/// Counts by stops, the display's white marked.
+pub fn histogram(ui: &Ui, area: Rect, histogram: &Histogram, layer: &str) {
+    let size = vec2(240.0, 84.0);
+    let rect = Rect::from_min_size(area.left_top() + vec2(10.0, 10.0), size);
+    let painter = ui.painter();
+    painter.rect_filled(rect, 4.0, SHADE);
+    let inside = rect.shrink2(vec2(8.0, 14.0));
+    let largest = histogram.counts.iter().copied().max().unwrap_or(0).max(1) as f32;
+    let step = inside.width() / histogram.counts.len() as f32;
+    for (idx, &count) in histogram.counts.iter().enumerate() {
+        // The root, so that a sky does not hide the rest.
+        let height = (count as f32 / largest).sqrt() * inside.height();
+        let x = inside.left() + idx as f32 * step;
+        let bar =
+            Rect::from_min_max(pos2(x, inside.bottom() - height), pos2(x + step * 0.9, inside.bottom()));
+        painter.rect_filled(bar, 0.0, Color32::from_rgb(150, 180, 215));
+    }
+    let one = inside.left() - Histogram::LOWEST / Histogram::STOPS as f32 * inside.width();
+    painter.vline(one, inside.y_range(), Stroke::new(1.0, Color32::from_white_alpha(110)));
+    let font = FontId::proportional(10.0);
+    painter.text(pos2(one, rect.bottom() - 1.0), Align2::CENTER_BOTTOM, "1", font.clone(), INK);
+    let mut text = layer.to_owned();
+    if histogram.n_odd > 0 {
+        text += &format!(" · {} pixels are not finite", histogram.n_odd);
+    }
+    painter.text(rect.left_top() + vec2(8.0, 2.0), Align2::LEFT_TOP, text, font, INK);
+}
