@@ -4,6 +4,8 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use super::canvas::Command;
+
 /// What can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
@@ -13,6 +15,8 @@ pub enum Action {
     Redo,
     /// Writes the graph to its file.
     Save,
+    /// A command of the canvas, whose keys count while they are meant for it.
+    Canvas(Command),
 }
 
 /// An action as menus, palette and the page of shortcuts show it.
@@ -35,20 +39,46 @@ const fn key(modifiers: Modifiers, key: Key) -> Option<KeyboardShortcut> {
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
+const NONE: Modifiers = Modifiers::NONE;
+
+const fn canvas(
+    command: Command,
+    label: &'static str,
+    menu: &'static str,
+    shortcut: Option<KeyboardShortcut>,
+) -> ActionSpec {
+    ActionSpec { action: Action::Canvas(command), label, menu, shortcut }
+}
+
 /// All actions, in the order of their menus. A shortcut with more modifiers stands before the one with
 /// fewer, because a shortcut is taken by the first that fits.
 pub const ACTIONS: &[ActionSpec] = &[
     ActionSpec { action: Action::Save, label: "Save", menu: "File", shortcut: key(COMMAND, Key::S) },
     ActionSpec { action: Action::Redo, label: "Redo", menu: "Edit", shortcut: key(COMMAND_SHIFT, Key::Z) },
     ActionSpec { action: Action::Undo, label: "Undo", menu: "Edit", shortcut: key(COMMAND, Key::Z) },
+    canvas(Command::AddNode, "Add a node", "Node", key(NONE, Key::Tab)),
+    canvas(Command::Cut, "Cut", "Edit", key(COMMAND, Key::X)),
+    canvas(Command::Copy, "Copy", "Edit", key(COMMAND, Key::C)),
+    canvas(Command::Paste, "Paste", "Edit", key(COMMAND, Key::V)),
+    canvas(Command::Duplicate, "Duplicate", "Edit", key(COMMAND, Key::D)),
+    canvas(Command::Delete, "Delete", "Edit", key(NONE, Key::Delete)),
+    canvas(Command::SelectAll, "Select all", "Edit", key(COMMAND, Key::A)),
+    canvas(Command::Rename, "Rename", "Node", key(NONE, Key::F2)),
+    canvas(Command::FrameAll, "Show all nodes", "View", key(NONE, Key::Home)),
+    canvas(Command::FrameSelected, "Show selected nodes", "View", key(NONE, Key::F)),
+    canvas(Command::Arrange, "Arrange nodes", "Node", key(NONE, Key::L)),
+    canvas(Command::ToggleSnap, "Snap to the grid", "View", None),
+    canvas(Command::ToggleMinimap, "Minimap", "View", None),
 ];
 
-/// The actions whose keys were pressed; a text field that has the keyboard keeps its own.
-pub fn pressed(context: &egui::Context) -> Vec<Action> {
+/// The actions whose keys were pressed, those of the canvas only while keys are meant for it; a text field
+/// that has the keyboard keeps its own.
+pub fn pressed(context: &egui::Context, canvas_has_keys: bool) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();
     }
-    let with_key = ACTIONS.iter().filter_map(|spec| Some((spec.action, spec.shortcut?)));
+    let heard = ACTIONS.iter().filter(|spec| canvas_has_keys || !matches!(spec.action, Action::Canvas(_)));
+    let with_key = heard.filter_map(|spec| Some((spec.action, spec.shortcut?)));
     let taken = with_key.filter(|(_, shortcut)| context.input_mut(|input| input.consume_shortcut(shortcut)));
     taken.map(|(action, _)| action).collect()
 }

@@ -1,5 +1,7 @@
 //! The window: panels, and what passes between them.
 
+use std::collections::HashMap;
+
 use super::action::{self, Action};
 use super::canvas::Canvas;
 use super::viewport::Viewport;
@@ -19,6 +21,8 @@ pub struct App {
     canvas: Canvas,
     viewport: Viewport,
     picture: Option<Value>,
+    /// Small pictures of what nodes give, by name.
+    thumbnails: HashMap<String, egui::TextureHandle>,
     /// The revision that was last asked for.
     asked: Option<u64>,
 }
@@ -35,6 +39,7 @@ impl App {
             canvas: Canvas::default(),
             viewport: Viewport::default(),
             picture: None,
+            thumbnails: HashMap::new(),
             asked: None,
         }
     }
@@ -45,6 +50,7 @@ impl App {
             Action::Undo => drop(self.project.undo()),
             Action::Redo => drop(self.project.redo()),
             Action::Save => {}
+            Action::Canvas(command) => self.canvas.ask(command),
         }
     }
 
@@ -108,14 +114,15 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut egui::Ui, _: &mut eframe::Frame) {
         self.listen();
-        for action in action::pressed(ui.ctx()) {
+        for action in action::pressed(ui.ctx(), self.canvas.has_keys()) {
             self.perform(action);
         }
         egui::Panel::right("inspector").default_size(300.0).show(ui, |ui| {
             inspector::show(ui, &mut self.project, &self.selection);
         });
         egui::Panel::bottom("canvas").resizable(true).default_size(360.0).show(ui, |ui| {
-            self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses);
+            let (project, selection) = (&mut self.project, &mut self.selection);
+            self.canvas.show(ui, project, selection, &self.statuses, &self.thumbnails);
         });
         egui::CentralPanel::default().show(ui, |ui| {
             self.viewport.show(ui, self.picture.as_ref().map(|value| value.get::<Image>()));
