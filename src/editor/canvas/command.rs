@@ -88,7 +88,7 @@ impl Canvas {
     /// Keys that no table holds: arrows, enter, escape, space, and what comes of the clipboard.
     pub(super) fn keys(&mut self, ui: &egui::Ui, desk: &mut Desk) {
         if !self.has_keys {
-            self.space_dragged = false;
+            self.space_dragged &= ui.input(|input| input.key_down(Key::Space));
             return;
         }
         let taken = |key| ui.input_mut(|input| input.consume_key(Modifiers::NONE, key));
@@ -115,7 +115,7 @@ impl Canvas {
             (Key::ArrowDown, Vec2::DOWN),
         ];
         for (_, direction) in arrows.into_iter().filter(|(key, _)| taken(*key)) {
-            self.go_to_next(ui, direction, desk);
+            self.go_to_next(direction, desk);
         }
         for event in ui.input(|input| input.events.clone()) {
             match event {
@@ -145,7 +145,7 @@ impl Canvas {
     }
 
     /// To the nearest node in a direction, or to the first.
-    fn go_to_next(&mut self, ui: &egui::Ui, direction: Vec2, desk: &mut Desk) {
+    fn go_to_next(&mut self, direction: Vec2, desk: &mut Desk) {
         let scene = self.scene.clone();
         let next = match desk.selection.active() {
             Some(name) => scene.next(name, direction),
@@ -154,7 +154,7 @@ impl Canvas {
         let Some(next) = next else { return };
         desk.selection.only(&next.name);
         self.view.reveal(next.rect, self.screen.map_or(Vec2::ZERO, |screen| screen.size()));
-        ui.memory_mut(|memory| memory.request_focus(Self::node_id(&next.name)));
+        self.focus_next = Some(next.name.clone());
     }
 
     fn delete(&mut self, label: &str, desk: &mut Desk) {

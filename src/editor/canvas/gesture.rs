@@ -34,8 +34,8 @@ pub enum Gesture {
     },
     /// A wire follows the pointer.
     Connect(Drawing),
-    /// The canvas follows the pointer.
-    Pan,
+    /// The canvas follows the pointer: its pan is this and where the pointer is on the screen.
+    Pan { less: Vec2 },
 }
 
 /// A wire with a loose end.
@@ -99,23 +99,30 @@ impl Canvas {
         }
         let middle = ui.input(|input| input.pointer.button_pressed(PointerButton::Middle));
         if middle && matches!(self.gesture, Gesture::None) {
-            self.gesture = Gesture::Pan;
+            self.gesture = self.pan_from(self.pointer);
         }
-        let (scroll, pinch, is_fine, shift) = ui.input(|input| {
-            // A wheel counts lines and zooms; a trackpad counts points and pans.
-            let is_fine = input.events.iter().any(|event| {
-                matches!(event, egui::Event::MouseWheel { unit: egui::MouseWheelUnit::Point, .. })
-            });
-            (input.smooth_scroll_delta(), input.zoom_delta(), is_fine, input.modifiers.shift)
+        let (scroll, pinch, shift) = ui.input(|input| {
+            for event in &input.events {
+                if let egui::Event::MouseWheel { unit, .. } = event {
+                    // A wheel counts lines and zooms; a trackpad counts points and pans.
+                    self.is_trackpad = *unit == egui::MouseWheelUnit::Point;
+                }
+            }
+            (input.smooth_scroll_delta(), input.zoom_delta(), input.modifiers.shift)
         });
         if pinch != 1.0 {
             self.view.zoom_at(self.pointer, pinch);
-        } else if is_fine || shift {
+        } else if self.is_trackpad || shift {
             self.view.pan += scroll;
         } else if scroll.y != 0.0 {
             const PER_POINT: f32 = 0.004;
             self.view.zoom_at(self.pointer, (scroll.y * PER_POINT).exp());
         }
+    }
+
+    /// A pan that began where the pointer was at `start` on the screen.
+    pub(super) fn pan_from(&self, start: Pos2) -> Gesture {
+        Gesture::Pan { less: self.view.pan - start.to_vec2() }
     }
 
     /// Whether the pointer is to pan instead of what it would do: the space bar is held, or alt.
@@ -127,18 +134,16 @@ impl Canvas {
 
     /// Takes the gesture further, or ends it.
     pub(super) fn go_on(&mut self, ui: &egui::Ui, desk: &mut Desk) {
-        let (is_down, pressed, delta) = ui.input(|input| {
-            let pointer = &input.pointer;
-            (pointer.any_down(), pointer.primary_pressed(), pointer.delta())
-        });
+        let (is_down, pressed) =
+            ui.input(|input| (input.pointer.any_down(), input.pointer.primary_pressed()));
         let at = self.view.from_screen(self.pointer);
         let is_released = !is_down;
         match std::mem::take(&mut self.gesture) {
             Gesture::None => {}
-            Gesture::Pan => {
-                self.view.pan += delta;
+            Gesture::Pan { less } => {
+                self.view.pan = less + self.pointer.to_vec2();
                 if !is_released {
-                    self.gesture = Gesture::Pan;
+                    self.gesture = Gesture::Pan { less };
                 }
             }
             Gesture::Box { from, kept } => {

@@ -32,7 +32,7 @@ impl Canvas {
         if !self.was_busy && back.drag_started_by(PointerButton::Primary) {
             let start = ui.input(|input| input.pointer.press_origin()).unwrap_or(self.pointer);
             self.gesture = if self.pans(ui) {
-                Gesture::Pan
+                self.pan_from(start)
             } else {
                 let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
                 let kept = if adds { desk.selection.nodes.clone() } else { Default::default() };
@@ -56,7 +56,7 @@ impl Canvas {
             Some(wire) => self.wire_menu(ui, &wire),
             None => self.back_menu(ui),
         });
-        if matches!(self.gesture, Gesture::Pan) {
+        if matches!(self.gesture, Gesture::Pan { .. }) {
             ui.ctx().set_cursor_icon(egui::CursorIcon::Grabbing);
         }
     }
@@ -111,7 +111,13 @@ impl Canvas {
     pub(super) fn nodes(&mut self, ui: &egui::Ui, brush: &Brush, desk: &mut Desk) {
         let scene = self.scene.clone();
         let seen = brush.view.rect_from_screen(brush.painter.clip_rect()).expand(16.0);
-        for shape in scene.nodes.iter().filter(|node| node.rect.intersects(seen)) {
+        let focused = ui.memory(|memory| memory.focused());
+        // What has the keyboard stays a widget wherever it is.
+        let is_shown =
+            |name: &String| focused == Some(Self::node_id(name)) || self.focus_next.as_ref() == Some(name);
+        let shown: Vec<&NodeShape> =
+            scene.nodes.iter().filter(|node| node.rect.intersects(seen) || is_shown(&node.name)).collect();
+        for shape in shown {
             self.node(ui, brush, shape, desk);
         }
     }
@@ -120,6 +126,9 @@ impl Canvas {
         let rect = brush.view.rect_to_screen(shape.rect);
         let response = ui.interact(rect, Self::node_id(&shape.name), Sense::click_and_drag());
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, format!("node {}", shape.name)));
+        if self.focus_next.take_if(|name| *name == shape.name).is_some() {
+            response.request_focus();
+        }
         self.touch_node(ui, &response, shape, desk);
         let default = super::super::NodeStatus::default();
         let status = desk.statuses.get(&shape.name).unwrap_or(&default);
@@ -193,7 +202,8 @@ impl Canvas {
 
     fn begin_move(&mut self, ui: &egui::Ui, shape: &NodeShape, adds: bool, desk: &mut Desk) {
         if self.pans(ui) {
-            self.gesture = Gesture::Pan;
+            let start = ui.input(|input| input.pointer.press_origin()).unwrap_or(self.pointer);
+            self.gesture = self.pan_from(start);
             return;
         }
         if adds {

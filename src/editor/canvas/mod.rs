@@ -62,6 +62,10 @@ pub struct Canvas {
     /// Where the pointer was last, on the screen.
     pointer: Pos2,
     has_keys: bool,
+    /// Gets the keyboard when it is drawn: what is no widget yet must not have it.
+    focus_next: Option<String>,
+    /// Whether it was last scrolled by a trackpad.
+    is_trackpad: bool,
     /// Whether a gesture went on when the frame began: its end begins no other.
     was_busy: bool,
     /// Whether the pointer dragged while the space bar is held.

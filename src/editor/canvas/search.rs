@@ -87,38 +87,31 @@ fn matching_port(document: &Document, port: &Port, spec: &NodeSpec) -> Option<&'
 
 /// How well a kind fits a query; `None` where letters are missing.
 fn score(query: &str, spec: &NodeSpec) -> Option<i32> {
-    let in_id = subsequence(query, spec.id).map(|score| score * 3 - spec.id.len() as i32);
+    let in_id = subsequence(query, spec.id).map(|score| score * 3 - spec.id.len() as i32 / 2);
     in_id.max(subsequence(query, spec.purpose).map(|score| score - 40))
 }
 
-/// 1 for a letter, 3 more for one at the start of a word, 2 more for one that follows the last.
+/// The best way to find the letters of a query in order: 1 for a letter, 3 more for one at the start of a
+/// word, 2 more for one that follows the last.
 fn subsequence(query: &str, text: &str) -> Option<i32> {
     let text: Vec<char> = text.to_lowercase().chars().collect();
-    let (mut score, mut from, mut last) = (0, 0, None);
+    let starts = |at: usize| at == 0 || !text[at - 1].is_alphanumeric();
+    // For each letter of the text, the best of the query so far that ends there.
+    let mut ends: Vec<Option<i32>> = Vec::new();
     for letter in query.to_lowercase().chars().filter(|letter| !letter.is_whitespace()) {
-        let found = (from..text.len()).filter(|at| text[*at] == letter);
-        let worth = |at: usize| {
-            let starts = at == 0 || !text[at - 1].is_alphanumeric();
-            let follows = last.is_some_and(|last| last + 1 == at);
-            1 + 3 * i32::from(starts) + 2 * i32::from(follows)
-        };
-        // Of equal ones the first, so that the rest of the query finds room.
-        let at = found.max_by_key(|at| (worth(*at), std::cmp::Reverse(*at)))?;
-        // A start of a word far ahead must not swallow what follows: only take it where the rest still fits.
-        let first = (from..text.len()).find(|at| text[*at] == letter)?;
-        let at = if at > first && !rest_fits(&text[at + 1..], query, letter) { first } else { at };
-        score += worth(at);
-        (last, from) = (Some(at), at + 1);
+        let is_first = ends.is_empty();
+        let mut before = is_first.then_some(0);
+        let next = (0..text.len()).map(|at| {
+            let follows = at.checked_sub(1).and_then(|last| *ends.get(last)?).map(|score| score + 2);
+            let found = before.max(follows).filter(|_| text[at] == letter);
+            if !is_first {
+                before = before.max(ends[at]);
+            }
+            found.map(|score| score + 1 + 3 * i32::from(starts(at)))
+        });
+        ends = next.collect();
     }
-    Some(score)
-}
-
-/// Whether what follows `letter` in the query is found in order in `text`.
-fn rest_fits(text: &[char], query: &str, letter: char) -> bool {
-    let query = query.to_lowercase();
-    let Some((_, rest)) = query.split_once(letter) else { return true };
-    let mut text = text.iter();
-    rest.chars().filter(|letter| !letter.is_whitespace()).all(|letter| text.any(|found| *found == letter))
+    if ends.is_empty() { Some(0) } else { ends.into_iter().max().flatten() }
 }
 
 /// The kinds that fit a query, the best first, in the menu's order among equals.
@@ -240,7 +233,7 @@ impl Canvas {
         });
         let Some((name, wired)) = added else { return };
         desk.selection.only(&name);
-        ui.memory_mut(|memory| memory.request_focus(Self::node_id(&name)));
+        self.focus_next = Some(name.clone());
         if let Err(reason) = wired {
             self.tell(ui, reason);
         }

@@ -65,7 +65,7 @@ fn window(text: &str) -> Harness<'static, Bench> {
 }
 
 fn window_of(document: Document) -> Harness<'static, Bench> {
-    let builder = Harness::builder().with_size(Vec2::new(1000.0, 700.0)).with_max_steps(12);
+    let builder = Harness::builder().with_size(Vec2::new(1000.0, 700.0)).with_step_dt(1.0 / 60.0);
     let mut harness = builder.build_ui_state(|ui, bench: &mut Bench| bench.show(ui), Bench::new(document));
     harness.step();
     harness.hover_at(EMPTY);
