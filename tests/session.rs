@@ -82,7 +82,7 @@ fn a_picture_is_written_again_only_where_it_changed() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("picture.exr");
     let mut document = document();
-    let node = Node { type_id: "save_image".to_owned(), params: Default::default() };
+    let node = Node::new("save_image");
     document.nodes.insert("save".to_owned(), node);
     let end = |node: &str| End { node: node.to_owned(), port: "image".to_owned() };
     document.wires.push(Wire { from: end("march"), to: end("save") });

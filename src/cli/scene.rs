@@ -6,7 +6,9 @@
 use std::path::{Path, PathBuf};
 
 use serde_json::Value as Json;
-use tyndall::graph::{Document, DocumentError, End, Node, PortType, Target, Wire, check, did_you_mean};
+use tyndall::graph::{
+    Document, DocumentError, End, Node, PortType, Target, Wire, check, did_you_mean, flatten,
+};
 use tyndall::image::{Format, atomic};
 use tyndall::nodes::catalog;
 
@@ -88,13 +90,15 @@ impl Scene {
     }
 }
 
-/// A graph with the parameters and the size of the command line.
+/// A graph with the parameters and the size of the command line, flat: `group/node` is a name.
 ///
 /// # Errors
 /// All that is wrong in the file, as [`Lines`]; else the first thing that is wrong on the command line.
 pub fn read(path: &Path, settings: &[String], size: Option<[u32; 2]>) -> anyhow::Result<Document> {
     let mut document = Document::load(path).map_err(|error| unreadable(path, error))?;
     set_params(&mut document, settings)?;
+    // From here on there are no groups: an output or a camera may stand in one.
+    let mut document = flatten(&document, catalog()).into_owned();
     if let Some([width, height]) = size {
         set_size(&mut document, width, height)?;
     }
@@ -219,7 +223,7 @@ fn add_save(document: &mut Document, giver: &str) -> String {
     let port = image_port(&document.nodes[giver]).unwrap_or_default();
     let end = |node: &str, port: &str| End { node: node.to_owned(), port: port.to_owned() };
     document.wires.push(Wire { from: end(giver, port), to: end(&name, "image") });
-    document.nodes.insert(name.clone(), Node { type_id: SAVE.to_owned(), params: Default::default() });
+    document.nodes.insert(name.clone(), Node::new(SAVE));
     name
 }
 

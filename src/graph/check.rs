@@ -7,7 +7,8 @@
 
 use std::fmt;
 
-use super::document::{Document, Wire};
+use super::document::{Document, End, Wire};
+use super::flat::{Silence, flatten};
 use super::params::{Moment, Params};
 use super::plan::{Target, needed, order};
 use super::spec::{Catalog, NodeSpec, PortSpec};
@@ -33,7 +34,31 @@ impl fmt::Display for Problem {
 /// All problems, in the order of the document: targets, nodes, wires, inputs, cycles. Empty when the
 /// graph can run.
 pub fn check(document: &Document, catalog: Catalog, target: Target) -> Vec<Problem> {
+    let flat = flatten(document, catalog);
+    let names = names_of(document, &flat, catalog, target);
+    let names: Option<Vec<&str>> = names.as_ref().map(|names| names.iter().map(String::as_str).collect());
+    check_flat(&flat, catalog, names.as_deref().map_or(Target::Sinks, Target::Nodes))
+}
+
+/// The nodes of the flat document that a target names.
+pub(super) fn names_of(
+    document: &Document,
+    flat: &Document,
+    catalog: Catalog,
+    target: Target,
+) -> Option<Vec<String>> {
+    match target {
+        Target::Sinks => None,
+        Target::Nodes(names) => {
+            Some(names.iter().flat_map(|name| document.meant_by(catalog, flat, name)).collect())
+        }
+    }
+}
+
+/// As [`check()`], for what [`flatten`] gives.
+pub(super) fn check_flat(document: &Document, catalog: Catalog, target: Target) -> Vec<Problem> {
     let mut problems = missing_targets(document, target);
+    problems.extend(document.flat.problems.iter().cloned());
     let moment = Moment { is_aside: false, frame: document.frame };
     for name in document.nodes.keys() {
         if let Err(found) = resolve(document, catalog, name, moment) {
@@ -91,8 +116,14 @@ pub(super) fn unknown_type(type_id: &str, catalog: Catalog) -> String {
 
 /// Text for a node that is not there.
 pub(super) fn unknown_node(document: &Document, name: &str) -> String {
-    let near = did_you_mean(name, document.nodes.keys().map(String::as_str));
-    format!("there is no such node;{near} nodes are {}", document.node_names())
+    match document.flat.silence(name) {
+        Some((silent, Silence::Muted)) => return format!("'{silent}' is muted; unmute it"),
+        Some((silent, Silence::Bypassed)) => return format!("'{silent}' is bypassed; take that back"),
+        None => {}
+    }
+    let paths = document.paths();
+    let near = did_you_mean(name, paths.iter().map(String::as_str));
+    format!("there is no such node;{near} nodes are {}", paths.join(", "))
 }
 
 fn problem(node: &str, field: &str, message: String) -> Problem {
@@ -115,43 +146,54 @@ fn check_wire(document: &Document, catalog: Catalog, wire: &Wire, earlier: &[Wir
     if earlier.contains(wire) {
         return refuse(format!("the wire '{wire}' stands twice; keep one"));
     }
-    let Some(giver) = document.nodes.get(&wire.from.node) else {
+    if !document.nodes.contains_key(&wire.from.node) {
         return refuse(format!(
             "the wire '{wire}' starts at no node;{} nodes are {}",
             near(&wire.from.node),
-            document.node_names()
+            document.paths().join(", ")
         ));
-    };
-    let Some(reader) = document.nodes.get(&wire.to.node) else {
+    }
+    if !document.nodes.contains_key(&wire.to.node) {
         return refuse(format!(
             "the wire '{wire}' ends at no node;{} nodes are {}",
             near(&wire.to.node),
-            document.node_names()
+            document.paths().join(", ")
         ));
+    }
+    fit(document, catalog, wire).err().and_then(refuse)
+}
+
+/// Why a wire between two nodes of the document does not fit. Of the ports of an unknown kind nothing is
+/// known.
+pub(super) fn fit(document: &Document, catalog: Catalog, wire: &Wire) -> Result<(), String> {
+    let (giver, reader) = (&document.nodes[&wire.from.node], &document.nodes[&wire.to.node]);
+    let Some(inputs) = reader.inputs(catalog) else {
+        return Ok(());
     };
-    // An unknown type has been reported; of its ports nothing is known.
-    let reader = catalog.find(&reader.type_id)?;
-    let Some(input) = reader.input(&wire.to.port) else {
-        let what = format!("{} takes no input '{}'", reader.id, wire.to.port);
-        return refuse(no_such_port(&what, &wire.to.port, reader.inputs));
+    let Some(input) = document.input(catalog, &wire.to) else {
+        let what = format!("{} takes no input '{}'", reader.type_id, wire.to.port);
+        return Err(no_such_port(&what, &wire.to.port, inputs.iter().map(|port| port.name)));
     };
-    let giver = catalog.find(&giver.type_id)?;
-    let Some((_, output)) = giver.output(&wire.from.port) else {
-        let what = format!("'{}' ({}) gives no output '{}'", wire.from.node, giver.id, wire.from.port);
-        return refuse(no_such_port(&what, &wire.from.port, giver.outputs));
+    let Some(outputs) = giver.outputs(catalog) else {
+        return Ok(());
+    };
+    let Some(output) = document.output(catalog, &wire.from) else {
+        let what = format!("'{}' ({}) gives no output '{}'", wire.from.node, giver.type_id, wire.from.port);
+        return Err(no_such_port(&what, &wire.from.port, outputs.iter().map(|port| port.name)));
     };
     if input.kind != output.kind {
-        let givers = givers(catalog, input);
-        return refuse(format!(
+        let givers = givers(catalog, &input);
+        return Err(format!(
             "cannot wire {} into {}; '{}' takes {}, which {givers}",
             output.kind, input.kind, wire.to, input.kind
         ));
     }
-    None
+    Ok(())
 }
 
-fn no_such_port(what: &str, found: &str, ports: &[PortSpec]) -> String {
-    let names: Vec<&str> = ports.iter().map(|port| port.name).collect();
+/// Text for a port that is not there.
+pub(super) fn no_such_port<'a>(what: &str, found: &str, names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
     let near = did_you_mean(found, names.iter().copied());
     match names.as_slice() {
         [] => format!("{what}; it has none, remove the wire"),
@@ -184,8 +226,17 @@ fn check_input(
     }
     let message = match sources.len() {
         0 if is_needed && port.absent.is_none() => {
-            let givers = givers(catalog, port);
-            format!("input '{}' is empty; wire {} into it, which {givers}", port.name, port.kind)
+            let (givers, kind) = (givers(catalog, port), port.kind);
+            let end = End { node: name.to_owned(), port: port.name.to_owned() };
+            let giver = document.flat.emptied.get(&end);
+            let why = match giver.and_then(|giver| document.flat.silence(giver)) {
+                Some((silent, Silence::Muted)) => format!(", because '{silent}' is muted; unmute it or"),
+                Some((silent, Silence::Bypassed)) => {
+                    format!(", because '{silent}' is bypassed and has no {kind} to pass on;")
+                }
+                None => ";".to_owned(),
+            };
+            format!("input '{}' is empty{why} wire {kind} into it, which {givers}", port.name)
         }
         0 | 1 => return None,
         _ if port.many => return None,

@@ -1,12 +1,20 @@
 //! The graph file: JSON made to be read and diffed by people.
 //!
 //! `{"tyndall": 1, "about": .., "nodes": {name: {"type": .., ..}}, "wires": ["a.port -> b.port"],
-//! "layout": {name: [x, y]}}`. Names are the ids; order is kept. Reading is strict: an unknown field, a
-//! name given twice, a newer version are errors that say what is allowed. What needs the list of node
-//! kinds (types, parameters, ports) is checked in `check`, so that a document with such mistakes can
-//! still be opened and repaired. Files of older versions are migrated step by step. Tested by round
-//! trips, by the exact text of every error and by the graphs of the truth set.
+//! "layout": {name: [x, y]}, "bends": {"a.port -> b.port": [[x, y]]}, "frames": [{"title": .., "at": [x, y],
+//! "size": [w, h]}]}`. Names are the ids; order is kept. A node of type `group` holds such an object of its
+//! own, and says in `"inputs": {port: "node.port"}` and `"outputs"` what its ports stand for; a document may
+//! say so too, for when it is inserted as a group. So a group's inside is a [`Document`] as well, and what is
+//! done to a graph can be done inside of a group.
+//!
+//! Reading is strict: an unknown field, a name given twice, a newer version are errors that say what is
+//! allowed; for the editor there is [`Document::open_leniently`], which leaves out what it does not
+//! understand and says so. What needs the list of node kinds (types, parameters, ports) is checked in
+//! `check`, so that a document with such mistakes can still be opened and repaired. Files of older versions
+//! are migrated step by step. Tested by round trips, by the exact text of every error and by the graphs of
+//! the truth set.
 
+mod read;
 mod strict;
 mod write;
 
@@ -17,22 +25,29 @@ use std::str::FromStr;
 use indexmap::IndexMap;
 use serde_json::{Map, Value as Json};
 
+use super::flat::Flattened;
 use super::params::Params;
 use super::spec::Catalog;
-use super::suggest::did_you_mean;
 
+use read::form;
+
+pub use read::is_node_name;
 pub(super) use strict::parse_json;
 
 /// One step of migration: changes a file of version i + 1, for place i in the list, into the next.
 type Migration = fn(&mut Map<String, Json>);
 
 const MIGRATIONS: &[Migration] = &[];
-const FIELDS: [&str; 5] = ["tyndall", "about", "nodes", "wires", "layout"];
+
+/// The type of a node that holds nodes of its own. No kind of the catalog has this name.
+pub const GROUP: &str = "group";
+/// Fields of a node that are no parameters. No parameter of any kind has these names.
+pub const RESERVED: [&str; 3] = ["type", "mute", "bypass"];
 
 /// The version that is written.
 pub const VERSION: u64 = MIGRATIONS.len() as u64 + 1;
 
-/// A graph as its file says it.
+/// A graph as its file says it, or the inside of a group.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
     /// What it is for, in a line; empty for nothing.
@@ -43,19 +58,48 @@ pub struct Document {
     pub wires: Vec<Wire>,
     /// Places on the canvas, in points.
     pub layout: IndexMap<String, [f64; 2]>,
+    /// Points through which a wire is drawn, from its output on.
+    pub bends: IndexMap<Wire, Vec<[f64; 2]>>,
+    /// Comments around parts of the canvas.
+    pub frames: Vec<Frame>,
+    /// As a group: what its inputs stand for, each for one input of a node inside or for several.
+    pub inputs: IndexMap<String, Vec<End>>,
+    /// As a group: what its outputs stand for.
+    pub outputs: IndexMap<String, End>,
     /// The folder at which relative paths start; empty for the working directory. Not part of the file.
     pub base: PathBuf,
     /// The frame that is looked at; without one sequences and keys are at their first. Not part of the file.
     pub frame: Option<i64>,
+    /// Of a document without groups, mutes and bypasses, what became of them. Not part of the file.
+    pub flat: Flattened,
 }
 
 /// A node as its file says it.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Node {
     /// Id of its kind.
     pub type_id: String,
     /// What is given; the rest has defaults.
     pub params: Map<String, Json>,
+    /// As if it and its wires were not there.
+    pub mute: bool,
+    /// Each output gives what the first wired input of its type gets.
+    pub bypass: bool,
+    /// Of a group: what it holds.
+    pub inside: Option<Box<Document>>,
+}
+
+/// A comment around a part of the canvas, in points.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Frame {
+    /// What it says.
+    pub title: String,
+    /// Its upper left corner.
+    pub at: [f64; 2],
+    /// Its width and height, both above 0.
+    pub size: [f64; 2],
+    /// sRGB, each 0..=1; the editor's own where there is none.
+    pub color: Option<[f64; 3]>,
 }
 
 /// A connection, written `from.port -> to.port`.
@@ -114,39 +158,81 @@ impl Document {
     /// # Errors
     /// Says what is wrong and what is allowed.
     pub fn parse(text: &str, base: &Path) -> Result<Self, DocumentError> {
-        let mut root = match parse_json(text).map_err(DocumentError::Json)? {
-            Json::Object(root) => root,
-            other => {
-                return Err(DocumentError::Form(vec![form("the graph", &other, "an object")]));
-            }
-        };
+        Self::from_json(parse_json(text).map_err(DocumentError::Json)?, base)
+    }
+
+    /// As [`Self::parse`], of JSON that has been read.
+    pub(super) fn from_json(json: Json, base: &Path) -> Result<Self, DocumentError> {
+        let mut root = object(json)?;
         migrate(&mut root, MIGRATIONS)?;
-        from_fields(root, base)
+        let (document, problems) = read::graph(root, base);
+        if problems.is_empty() { Ok(document) } else { Err(DocumentError::Form(problems)) }
+    }
+
+    /// Reads JSON text as [`Self::parse`] does, but leaves out what it does not understand, of a later version
+    /// too, and says what that is, a line each.
+    ///
+    /// # Errors
+    /// Where it is no JSON object with a version.
+    pub fn open_leniently(text: &str, base: &Path) -> Result<(Self, Vec<String>), DocumentError> {
+        let mut root = object(parse_json(text).map_err(DocumentError::Json)?)?;
+        let mut left_out = Vec::new();
+        match root.get("tyndall").and_then(Json::as_u64).filter(|version| *version > VERSION) {
+            Some(version) => left_out.push(format!(
+                "the graph is of version {version}, this program reads up to {VERSION}; what it does not \
+                 know is left out"
+            )),
+            None => migrate(&mut root, MIGRATIONS)?,
+        }
+        let (document, problems) = read::graph(root, base);
+        left_out.extend(problems);
+        Ok((document, left_out))
     }
 
     /// The text of the file, with a line end.
     pub fn to_json(&self) -> String {
-        let object = |entries: Vec<(String, Json)>| Json::Object(entries.into_iter().collect());
-        let nodes = self.nodes.iter().map(|(name, node)| {
-            let mut fields = Map::from_iter([("type".to_owned(), node.type_id.clone().into())]);
-            fields.extend(node.params.clone());
-            (name.clone(), Json::Object(fields))
-        });
-        let wires = self.wires.iter().map(|wire| wire.to_string().into());
-        let mut root = vec![("tyndall".to_owned(), VERSION.into())];
-        if !self.about.is_empty() {
-            root.push(("about".to_owned(), self.about.clone().into()));
+        write::pretty(&Json::Object(self.to_fields()))
+    }
+
+    /// The fields of the file.
+    pub(super) fn to_fields(&self) -> Map<String, Json> {
+        let mut root = Map::from_iter([("tyndall".to_owned(), VERSION.into())]);
+        root.extend(write::fields(self));
+        root
+    }
+
+    /// The node of this name, or of `group/inner`.
+    pub fn node(&self, path: &str) -> Option<&Node> {
+        // A flat document has names with slashes.
+        self.nodes.get(path).or_else(|| {
+            let (group, inner) = path.split_once('/')?;
+            self.nodes.get(group)?.inside.as_ref()?.node(inner)
+        })
+    }
+
+    /// As [`Self::node`].
+    pub fn node_mut(&mut self, path: &str) -> Option<&mut Node> {
+        if self.nodes.contains_key(path) {
+            return self.nodes.get_mut(path);
         }
-        root.push(("nodes".to_owned(), object(nodes.collect())));
-        root.push(("wires".to_owned(), Json::Array(wires.collect())));
-        if !self.layout.is_empty() {
-            let places = self.layout.iter().map(|(name, place)| {
-                let place = place.map(|x| Json::Number(super::spec::json_number(x)));
-                (name.clone(), Json::Array(place.to_vec()))
-            });
-            root.push(("layout".to_owned(), object(places.collect())));
+        let (group, inner) = path.split_once('/')?;
+        self.nodes.get_mut(group)?.inside.as_mut()?.node_mut(inner)
+    }
+
+    /// The inside of a group, `outer/inner` for one in another; of the empty path, itself.
+    pub fn inside(&self, path: &str) -> Option<&Document> {
+        match path {
+            "" => Some(self),
+            path => self.node(path)?.inside.as_deref(),
         }
-        write::pretty(&object(root))
+    }
+
+    /// As [`Self::inside`].
+    pub fn inside_mut(&mut self, path: &str) -> Option<&mut Document> {
+        match path {
+            "" => Some(self),
+            path => self.node_mut(path)?.inside.as_deref_mut(),
+        }
     }
 
     /// Whether some node can be another in another frame.
@@ -154,17 +240,41 @@ impl Document {
         self.nodes.values().any(|node| node.varies(catalog))
     }
 
-    /// The names of all nodes, for messages.
-    pub(super) fn node_names(&self) -> String {
-        let names: Vec<&str> = self.nodes.keys().map(String::as_str).collect();
-        names.join(", ")
+    /// The names of all nodes, those in groups as `group/inner`.
+    pub fn paths(&self) -> Vec<String> {
+        let of_node = |(name, node): (&String, &Node)| {
+            let inner = node.inside.iter().flat_map(|inside| inside.paths());
+            let inner: Vec<String> = inner.map(|inner| format!("{name}/{inner}")).collect();
+            std::iter::once(name.clone()).chain(inner)
+        };
+        self.nodes.iter().flat_map(of_node).collect()
     }
 }
 
 impl Node {
+    /// A node that says nothing but its type.
+    pub fn new(type_id: &str) -> Self {
+        Self { type_id: type_id.to_owned(), ..Self::default() }
+    }
+
+    /// A group that holds a document.
+    pub fn group(inside: Document) -> Self {
+        Self { inside: Some(Box::new(inside)), ..Self::new(GROUP) }
+    }
+
     /// Whether its own parameters can be others in another frame.
     pub(super) fn varies(&self, catalog: Catalog) -> bool {
-        catalog.find(&self.type_id).is_some_and(|spec| Params::vary(spec.params, &self.params))
+        match &self.inside {
+            Some(inside) => inside.varies(catalog),
+            None => catalog.find(&self.type_id).is_some_and(|spec| Params::vary(spec.params, &self.params)),
+        }
+    }
+}
+
+fn object(json: Json) -> Result<Map<String, Json>, DocumentError> {
+    match json {
+        Json::Object(fields) => Ok(fields),
+        other => Err(DocumentError::Form(vec![form("the graph", &other, "an object")])),
     }
 }
 
@@ -193,94 +303,11 @@ fn migrate(root: &mut Map<String, Json>, steps: &[Migration]) -> Result<(), Docu
     Ok(())
 }
 
-fn from_fields(root: Map<String, Json>, base: &Path) -> Result<Document, DocumentError> {
-    let mut document = Document { base: base.to_owned(), ..Document::default() };
-    let mut problems = Vec::new();
-    if !root.contains_key("nodes") {
-        problems.push("the field \"nodes\" is missing; write \"nodes\": {}".to_owned());
+impl End {
+    /// A port of a node.
+    pub fn new(node: &str, port: &str) -> Self {
+        Self { node: node.to_owned(), port: port.to_owned() }
     }
-    for (field, json) in root {
-        match (field.as_str(), json) {
-            ("tyndall", _) => {}
-            ("about", Json::String(about)) => document.about = about,
-            ("about", other) => problems.push(form("about", &other, "a string")),
-            ("nodes", Json::Object(nodes)) => {
-                for (name, json) in nodes {
-                    match read_node(&name, json) {
-                        Ok(node) => drop(document.nodes.insert(name, node)),
-                        Err(found) => problems.push(found),
-                    }
-                }
-            }
-            ("nodes", other) => problems.push(form("nodes", &other, "an object of nodes by name")),
-            ("wires", Json::Array(wires)) => {
-                for (idx, json) in wires.into_iter().enumerate() {
-                    match json.as_str().and_then(|text| text.parse().ok()) {
-                        Some(wire) => document.wires.push(wire),
-                        None => problems.push(form(
-                            &format!("wires[{idx}]"),
-                            &json,
-                            "\"node.output -> node.input\"",
-                        )),
-                    }
-                }
-            }
-            ("wires", other) => problems.push(form("wires", &other, "a list of wires")),
-            ("layout", Json::Object(places)) => {
-                for (name, json) in places {
-                    match read_place(&json) {
-                        Some(place) => drop(document.layout.insert(name, place)),
-                        None => problems.push(form(&format!("layout.{name}"), &json, "[x, y]")),
-                    }
-                }
-            }
-            ("layout", other) => problems.push(form("layout", &other, "an object of [x, y]")),
-            (unknown, _) => problems.push(format!(
-                "unknown field '{unknown}';{} allowed are {}",
-                did_you_mean(unknown, FIELDS),
-                FIELDS.join(", ")
-            )),
-        }
-    }
-    let homeless = document.layout.keys();
-    let homeless = homeless.filter(|name| !document.nodes.contains_key(*name));
-    problems.extend(homeless.map(|name| {
-        let near = did_you_mean(name, document.nodes.keys().map(String::as_str));
-        format!("layout.{name} is the place of no node;{near} remove it or add the node")
-    }));
-    if problems.is_empty() { Ok(document) } else { Err(DocumentError::Form(problems)) }
-}
-
-fn read_node(name: &str, json: Json) -> Result<Node, String> {
-    if !is_node_name(name) {
-        return Err(format!("'{name}' is no name of a node; write letters, digits, '_' and '-'"));
-    }
-    let Json::Object(mut params) = json else {
-        return Err(form(&format!("nodes.{name}"), &json, "an object"));
-    };
-    // shift_remove keeps the order of what stays.
-    match params.shift_remove("type") {
-        Some(Json::String(type_id)) => Ok(Node { type_id, params }),
-        Some(other) => Err(form(&format!("nodes.{name}.type"), &other, "a string")),
-        None => Err(format!("nodes.{name} has no \"type\"; 'tyndall nodes' lists them")),
-    }
-}
-
-/// Whether a node may have this name: it must survive in a wire and on the command line.
-pub fn is_node_name(name: &str) -> bool {
-    let allowed = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
-    !name.is_empty() && name.chars().all(allowed)
-}
-
-fn read_place(json: &Json) -> Option<[f64; 2]> {
-    match json.as_array()?.as_slice() {
-        [x, y] => Some([x.as_f64()?, y.as_f64()?]),
-        _ => None,
-    }
-}
-
-fn form(what: &str, found: &Json, allowed: &str) -> String {
-    format!("{what} is {}; write {allowed}", super::params::describe(found))
 }
 
 impl FromStr for Wire {

@@ -1,10 +1,17 @@
-//! One parameter set from text: `--set node.parameter=value`.
+//! Changes of a document: one parameter set from text here, `--set node.parameter=value`, and in the modules
+//! below nodes, wires, the clipboard, groups and the folder. What is refused leaves the document as it was.
 //!
 //! The text is JSON; what is no JSON is a string where a string is taken (text, choice, path), else an
 //! error. A member of a record is `medium.emission.flame`, and the record comes to be when it was null.
 //! Paths on a command line start at the working directory, those of a file at the file, so a path is
 //! made absolute here. The value is checked before the document changes. Tested by values of each form
 //! and the exact text of every error.
+
+mod clipboard;
+mod groups;
+mod nodes;
+mod paths;
+mod wires;
 
 use std::path::Path;
 
@@ -31,24 +38,41 @@ pub enum SetError {
     },
 }
 
+/// Text for a node that is not there.
+fn no_node(document: &Document, name: &str) -> String {
+    format!("'{name}': {}", unknown_node(document, name))
+}
+
 impl Document {
-    /// Sets `node.parameter`, or `node.record.member`, to the JSON or string `text`.
+    /// Sets `node.parameter`, `node.record.member` or `group/node.parameter` to the JSON or string `text`;
+    /// `node.mute` and `node.bypass` too.
     ///
     /// # Errors
     /// Says what is allowed; the document is then as it was.
     pub fn set(&mut self, catalog: Catalog, name: &str, text: &str) -> Result<(), SetError> {
         let refused = |message: String| SetError::Refused { name: name.to_owned(), message };
         let (node_name, field) = name.split_once('.').ok_or_else(|| SetError::Name(name.to_owned()))?;
-        let Some(node) = self.nodes.get(node_name) else {
+        let Some(node) = self.node(node_name) else {
             return Err(refused(unknown_node(self, node_name)));
         };
+        if let "mute" | "bypass" = field {
+            let is_set = text.trim().parse();
+            let is_set = is_set.map_err(|_| refused(format!("{field} is {text}; write true or false")))?;
+            let node = self.node_mut(node_name).expect("found above");
+            *(if field == "mute" { &mut node.mute } else { &mut node.bypass }) = is_set;
+            return Ok(());
+        }
+        if node.inside.is_some() {
+            let message = format!("a group has no parameters; write {node_name}/node.parameter=value");
+            return Err(refused(message));
+        }
         let Some(kind) = catalog.find(&node.type_id) else {
             return Err(refused(unknown_type(&node.type_id, catalog)));
         };
         let spec = find_param(field, kind.params).map_err(refused)?;
         let value = read_value(field, spec, text, &self.base).map_err(refused)?;
         let mut segments = field.split('.');
-        let mut object = &mut self.nodes[node_name].params;
+        let mut object = &mut self.node_mut(node_name).expect("found above").params;
         let mut last = segments.next().expect("split gives at least one");
         for segment in segments {
             let record = object.entry(last).or_insert(Json::Null);

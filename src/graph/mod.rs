@@ -1,7 +1,7 @@
 //! The node graph: what nodes are, the file, its checks, the order, the cache and the evaluation.
 //!
-//! From text to values: `Document` (the file as it stands) → `check` (everything wrong with it, at once)
-//! → `Plan` (what to run, in which order) → `evaluate` (runs it through a `Host`, with a `Cache` by
+//! From text to values: `Document` (the file as it stands) → `flatten` (without groups, mutes and bypasses)
+//! → `check` (everything wrong with it, at once) → `Plan` (what to run, in which order) → `evaluate` (runs it through a `Host`, with a `Cache` by
 //! `Key`). What a node is stands in its `NodeSpec` alone. The graph knows no concrete node, no GPU and
 //! no UI: values are opaque, and the host that runs nodes is handed in.
 //!
@@ -13,14 +13,14 @@ pub mod document;
 pub mod edit;
 pub mod eval;
 pub mod file;
+pub mod flat;
 pub mod key;
 pub mod layout;
 mod node;
 pub mod params;
 pub mod plan;
-mod rename;
+mod ports;
 mod report;
-mod rewire;
 pub mod spec;
 mod suggest;
 pub mod value;
@@ -30,15 +30,17 @@ mod toy;
 
 pub use cache::Cache;
 pub use check::{Problem, check};
-pub use document::{Document, DocumentError, End, Node, Wire};
+pub use document::{Document, DocumentError, End, Frame, GROUP, Node, RESERVED, Wire, is_node_name};
 pub use edit::SetError;
 pub use eval::{
     CancelToken, Evaluation, Event, Host, Inputs, NodeError, NodeJob, Outcome, Outputs, evaluate,
 };
 pub use file::FileState;
+pub use flat::{Flattened, Silence, flatten};
 pub use key::Key;
 pub use params::{Moment, ParamProblem, ParamValue, Params};
 pub use plan::{Job, Plan, Source, Target, Work};
+pub use ports::Port;
 pub use report::{Decision, Report, StageWork};
 pub use spec::{Catalog, Category, Limits, NodeSpec, ParamKind, ParamSpec, PortSpec, PortType, Timing};
 pub use suggest::did_you_mean;

@@ -9,8 +9,9 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use super::check::{check, resolve};
+use super::check::{check_flat, names_of, resolve};
 use super::document::Document;
+use super::flat::flatten;
 use super::params::{Moment, Params};
 use super::spec::{Catalog, NodeSpec};
 use moments::Moments;
@@ -69,7 +70,14 @@ pub struct Source {
 impl Plan {
     /// The plan for `target`; never fails, because problems belong to their nodes.
     pub fn new(document: &Document, catalog: Catalog, target: Target) -> Self {
-        let problems = check(document, catalog, target);
+        let flat = flatten(document, catalog);
+        let names = names_of(document, &flat, catalog, target);
+        let names: Option<Vec<&str>> = names.as_ref().map(|names| names.iter().map(String::as_str).collect());
+        Self::of_flat(&flat, catalog, names.as_deref().map_or(Target::Sinks, Target::Nodes))
+    }
+
+    fn of_flat(document: &Document, catalog: Catalog, target: Target) -> Self {
+        let problems = check_flat(document, catalog, target);
         let order = order(document);
         let needed = needed(document, target);
         let moments = Moments::new(document, catalog, &order.nodes, &needed);

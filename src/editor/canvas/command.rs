@@ -1,14 +1,14 @@
 //! What can be asked of the canvas by key, menu or palette, and the doing of it.
 
-use std::path::Path;
-
 use egui::{Context, Event, Key, Modifiers, Pos2, Vec2, ViewportCommand};
 
+use super::desk::Desk;
 use super::gesture::Gesture;
 use super::search::Purpose;
-use super::{Canvas, Desk, Request};
+use super::{Canvas, Chosen, Request};
 use crate::graph::Document;
 use crate::graph::layout::layered;
+use crate::nodes::catalog;
 
 /// What can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -39,6 +39,20 @@ pub enum Command {
     ToggleMinimap,
     /// Whether moved nodes stand on the grid.
     ToggleSnap,
+    /// As if the selected nodes were not there, or again as if they were.
+    Mute,
+    /// Lets through what the selected nodes get, or no longer.
+    Bypass,
+    /// Makes a node of the selected ones.
+    Group,
+    /// Puts what a group holds in its place.
+    Ungroup,
+    /// Shows the inside of the selected group.
+    OpenGroup,
+    /// Shows what is around this group.
+    LeaveGroup,
+    /// A comment around the selected nodes.
+    AddFrame,
 }
 
 /// How far a copy stands beside what was duplicated.
@@ -46,10 +60,18 @@ const BESIDE: f64 = 32.0;
 
 impl Canvas {
     /// Does what was asked for.
-    pub(super) fn perform(&mut self, context: &Context, command: Command, desk: &mut Desk) {
+    pub(super) fn perform(&mut self, ui: &egui::Ui, command: Command, desk: &mut Desk) {
+        let context = ui.ctx();
         let size = self.screen.map_or(Vec2::ZERO, |screen| screen.size());
         match command {
             Command::AddNode => self.open_search(Purpose::Add),
+            Command::AddFrame => self.add_frame(desk),
+            Command::Mute
+            | Command::Bypass
+            | Command::Group
+            | Command::Ungroup
+            | Command::OpenGroup
+            | Command::LeaveGroup => self.perform_on_groups(ui, command, desk),
             Command::Copy => copy(context, desk),
             Command::Cut => {
                 copy(context, desk);
@@ -57,12 +79,16 @@ impl Canvas {
             }
             Command::Paste => context.send_viewport_cmd(ViewportCommand::RequestPaste),
             Command::Duplicate => {
-                let part = self.selected_part(desk);
-                self.insert("Duplicate", &part, [BESIDE; 2], desk);
+                let names: Vec<String> = desk.selection.nodes.iter().cloned().collect();
+                let added =
+                    self.insert("Duplicate", desk, |document| document.duplicate(&names, [BESIDE; 2]));
+                if let Err(reason) = added {
+                    self.tell(ui, reason);
+                }
             }
             Command::Delete => self.delete("Delete", desk),
             Command::SelectAll => {
-                desk.selection.nodes = desk.project.document().nodes.keys().cloned().collect();
+                desk.selection.nodes = desk.document().nodes.keys().cloned().collect();
             }
             Command::Rename => {
                 if let Some(name) = desk.selection.active() {
@@ -75,7 +101,7 @@ impl Canvas {
                 let scene = self.scene.clone();
                 let size =
                     |name: &str| scene.node(name).map_or([0.0; 2], |node| super::scene::size_of(node.rect));
-                desk.project.edit("Arrange", |document| document.layout = layered(document, size));
+                desk.edit("Arrange", |document| document.layout = layered(document, size));
                 self.update(desk);
                 self.view
                     .fit(self.scene.all_bounds(), self.screen.map_or(Vec2::ZERO, |screen| screen.size()));
@@ -139,7 +165,7 @@ impl Canvas {
                     desk.project.undo();
                 }
             }
-            Gesture::None if self.wire.take().is_none() => desk.selection.nodes.clear(),
+            Gesture::None if self.chosen.take().is_none() => desk.selection.nodes.clear(),
             _ => {}
         }
     }
@@ -158,51 +184,53 @@ impl Canvas {
     }
 
     fn delete(&mut self, label: &str, desk: &mut Desk) {
-        if let Some(wire) = self.wire.take() {
-            desk.project.edit("Unplug", |document| document.wires.retain(|other| *other != wire));
-            return;
+        match self.chosen.take() {
+            Some(Chosen::Wire(wire)) => {
+                return desk.edit("Unplug", |document| drop(document.disconnect(&wire)));
+            }
+            Some(Chosen::Bend(wire, idx)) => return Self::remove_bend(desk, &wire, idx),
+            Some(Chosen::Frame(idx)) => return Self::remove_frame(desk, idx),
+            None => {}
         }
         let names: Vec<String> = desk.selection.nodes.drain(..).collect();
         let scene = self.scene.clone();
-        desk.project.edit(label, |document| {
+        desk.edit(label, |document| {
             Self::pin(&scene, document);
             document.remove(&names);
         });
     }
 
-    /// The selected nodes with their places, as a graph.
-    fn selected_part(&self, desk: &Desk) -> Document {
-        let names: Vec<String> = desk.selection.nodes.iter().cloned().collect();
-        let mut document = desk.project.document().clone();
-        Self::pin(&self.scene, &mut document);
-        document.part(&names)
-    }
-
     /// Adds nodes and selects them.
-    fn insert(&mut self, label: &str, part: &Document, offset: [f64; 2], desk: &mut Desk) {
-        if part.nodes.is_empty() {
-            return;
-        }
+    fn insert<E: std::fmt::Display>(
+        &mut self,
+        label: &str,
+        desk: &mut Desk,
+        add: impl FnOnce(&mut Document) -> Result<Vec<String>, E>,
+    ) -> Result<(), E> {
         let scene = self.scene.clone();
-        let mut names = Vec::new();
-        desk.project.edit(label, |document| {
+        let mut added = Ok(Vec::new());
+        desk.edit(label, |document| {
             Self::pin(&scene, document);
-            names = document.paste(part, offset);
+            added = add(document);
         });
-        desk.selection.nodes = names.into_iter().collect();
+        let names = added?;
+        if !names.is_empty() {
+            desk.selection.nodes = names.into_iter().collect();
+        }
+        Ok(())
     }
 
     fn paste(&mut self, ui: &egui::Ui, text: &str, desk: &mut Desk) {
-        match Document::parse(text, Path::new("")) {
-            Ok(part) => {
-                let at = self.view.from_screen(self.pointer);
-                let offset = offset_to(&part, at);
-                self.insert("Paste", &part, offset, desk);
-            }
-            Err(error) => {
-                let first = error.to_string().lines().next().unwrap_or_default().to_owned();
-                self.tell(ui, format!("the clipboard holds no nodes: {first}"));
-            }
+        let at = self.view.from_screen(self.pointer);
+        let pasted = self.insert("Paste", desk, |document| {
+            // Into nothing first, to learn where the nodes would stand.
+            let mut alone = Document { base: document.base.clone(), ..Document::default() };
+            alone.paste_text(catalog(), text, [0.0; 2])?;
+            document.paste_text(catalog(), text, offset_to(&alone, at))
+        });
+        if let Err(error) = pasted {
+            let first = error.to_string().lines().next().unwrap_or_default().to_owned();
+            self.tell(ui, format!("the clipboard holds no nodes: {first}"));
         }
     }
 }
@@ -210,7 +238,7 @@ impl Canvas {
 fn copy(context: &Context, desk: &Desk) {
     let names: Vec<String> = desk.selection.nodes.iter().cloned().collect();
     if !names.is_empty() {
-        context.copy_text(desk.project.document().part(&names).to_json());
+        context.copy_text(desk.document().copy(&names));
     }
 }
 

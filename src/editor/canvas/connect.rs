@@ -2,12 +2,13 @@
 
 use egui::Align2;
 
+use super::Canvas;
+use super::desk::Desk;
 use super::gesture::{Drawing, Gesture};
 use super::node::PortLook;
 use super::paint::Brush;
 use super::scene::{NodeShape, Port, PortShape, Side};
 use super::search::Purpose;
-use super::{Canvas, Desk};
 use crate::graph::{Document, Wire};
 use crate::nodes::catalog;
 
@@ -35,7 +36,9 @@ impl Drawing {
     /// Makes it a wire of the document.
     fn connect(&self, document: &mut Document, wire: Wire) -> Result<(), String> {
         let mut changed = document.clone();
-        changed.wires.retain(|other| Some(other) != self.unplugged.as_ref());
+        if let Some(unplugged) = &self.unplugged {
+            changed.disconnect(unplugged);
+        }
         changed.connect(catalog(), wire)?;
         *document = changed;
         Ok(())
@@ -83,9 +86,7 @@ impl Canvas {
             },
             (None, None) => {
                 match drawing.unplugged {
-                    Some(wire) => desk.project.edit("Unplug", |document| {
-                        document.wires.retain(|other| *other != wire);
-                    }),
+                    Some(wire) => desk.edit("Unplug", |document| drop(document.disconnect(&wire))),
                     None => self.open_search(Purpose::Connect(drawing.fixed)),
                 }
                 return;
@@ -99,8 +100,11 @@ impl Canvas {
             let other = if port.side == Side::Output { "an input" } else { "an output" };
             return self.tell(ui, format!("{} goes to {other}", port.label()));
         };
+        if let Some(reason) = scene.port(port).and_then(|port| self.misfit(&drawing, port)) {
+            return self.tell(ui, reason);
+        }
         let mut done = Ok(());
-        desk.project.edit("Connect", |document| done = drawing.connect(document, wire));
+        desk.edit("Connect", |document| done = drawing.connect(document, wire));
         if let Err(reason) = done {
             self.tell(ui, reason);
         }
@@ -138,29 +142,25 @@ impl Canvas {
         }
     }
 
+    /// Why what a port carries is not what the wire carries.
+    fn misfit(&self, drawing: &Drawing, target: &PortShape) -> Option<String> {
+        let (fixed, kind) = self.scene.port(&drawing.fixed)?.kind.zip(target.kind)?;
+        let verb = if target.port.side == Side::Input { "takes" } else { "gives" };
+        (fixed != kind).then(|| format!("{} {verb} {kind}, not {fixed}", target.port.end))
+    }
+
     fn why_not(&self, ui: &egui::Ui, brush: &Brush, drawing: &Drawing, target: &PortShape) {
-        let fixed = self.scene.port(&drawing.fixed);
-        let kinds = fixed.and_then(|port| port.kind).zip(target.kind);
-        let text = match kinds {
-            _ if target.port.side == drawing.fixed.side => return,
-            Some((fixed, kind)) if fixed != kind => {
-                let verb = if target.port.side == Side::Input { "takes" } else { "gives" };
-                format!("{} {verb} {kind}, not {fixed}", target.port.end)
-            }
-            _ => format!("{} would close a cycle", target.port.end),
-        };
+        if target.port.side == drawing.fixed.side {
+            return;
+        }
+        let cycle = || format!("{} would close a cycle", target.port.end);
+        let text = self.misfit(drawing, target).unwrap_or_else(cycle);
         let at = self.pointer + egui::vec2(14.0, 18.0);
         let place = brush.painter.add(egui::Shape::Noop);
-        let rect = brush
-            .text(at, Align2::LEFT_TOP, &text, 12.0, brush.theme.text, 360.0)
-            .expand2(egui::vec2(8.0, 5.0));
-        let frame = egui::Shape::rect_filled(rect, 5.0, ui.visuals().window_fill);
-        brush.painter.set(place, frame);
-        brush.painter.rect_stroke(
-            rect,
-            5.0,
-            egui::Stroke::new(1.0, brush.theme.bad),
-            egui::StrokeKind::Inside,
-        );
+        let rect = brush.text(at, Align2::LEFT_TOP, &text, 12.0, brush.theme.text, 360.0);
+        let rect = rect.expand2(egui::vec2(8.0, 5.0));
+        brush.painter.set(place, egui::Shape::rect_filled(rect, 5.0, ui.visuals().window_fill));
+        let edge = egui::Stroke::new(1.0, brush.theme.bad);
+        brush.painter.rect_stroke(rect, 5.0, edge, egui::StrokeKind::Inside);
     }
 }

@@ -8,9 +8,10 @@ use std::collections::HashSet;
 use egui::{Id, Key, PointerButton, Pos2, Rect, Vec2};
 use indexmap::IndexSet;
 
+use super::Canvas;
+use super::desk::Desk;
 use super::paint::GRID;
 use super::scene::{Port, Side};
-use super::{Canvas, Desk};
 use crate::graph::{Document, Wire};
 use crate::nodes::catalog;
 
@@ -23,9 +24,15 @@ pub enum Gesture {
     Move {
         /// Where they stood.
         starts: Vec<(String, Vec2)>,
+        /// The frame that is moved with what it holds, and where it stood.
+        frame: Option<(usize, Vec2)>,
         /// Where the pointer was, on the canvas.
         from: Pos2,
     },
+    /// A frame's corner follows.
+    Resize { frame: usize, size: Vec2, from: Pos2 },
+    /// A point of a wire follows.
+    Bend { wire: Wire, idx: usize },
     /// What a box touches is selected.
     Box {
         from: Pos2,
@@ -55,6 +62,8 @@ impl Gesture {
     pub fn holds(&self, document: &Document) -> bool {
         match self {
             Self::Move { starts, .. } => starts.iter().all(|(name, _)| document.nodes.contains_key(name)),
+            Self::Resize { frame, .. } => *frame < document.frames.len(),
+            Self::Bend { wire, idx } => document.bends.get(wire).is_some_and(|bends| *idx < bends.len()),
             Self::Connect(drawing) => document.nodes.contains_key(&drawing.fixed.end.node),
             _ => true,
         }
@@ -74,7 +83,10 @@ impl Drawing {
         };
         let mut rest = document.clone();
         rest.wires.retain(|wire| Some(wire) != unplugged.as_ref());
+        // Through a group a wire need not pass to all of it, so there only the drop tells.
+        let has_groups = document.nodes.values().any(|node| node.inside.is_some());
         let blocked = match fixed.side {
+            _ if has_groups => HashSet::new(),
             Side::Output => rest.upstream(&fixed.end.node),
             Side::Input => rest.downstream(&fixed.end.node),
         };
@@ -155,13 +167,29 @@ impl Canvas {
                     self.gesture = Gesture::Box { from, kept };
                 }
             }
-            Gesture::Move { starts, from } => {
-                self.move_nodes(&starts, at - from, desk);
+            Gesture::Resize { frame, size, from } => {
+                self.resize_frame(frame, size + (at - from), desk);
+                if is_released {
+                    desk.project.end_gesture();
+                } else {
+                    self.gesture = Gesture::Resize { frame, size, from };
+                }
+            }
+            Gesture::Bend { wire, idx } => {
+                self.move_bend(&wire, idx, at, desk);
+                if is_released {
+                    desk.project.end_gesture();
+                } else {
+                    self.gesture = Gesture::Bend { wire, idx };
+                }
+            }
+            Gesture::Move { starts, frame, from } => {
+                self.move_nodes(&starts, frame, at - from, desk);
                 if is_released {
                     self.drop_on_wire(&starts, desk);
                     desk.project.end_gesture();
                 } else {
-                    self.gesture = Gesture::Move { starts, from };
+                    self.gesture = Gesture::Move { starts, frame, from };
                 }
             }
             Gesture::Connect(mut drawing) => {
@@ -175,19 +203,28 @@ impl Canvas {
         }
     }
 
-    fn move_id() -> Id {
+    pub(super) fn move_id() -> Id {
         Id::new("canvas move")
     }
 
-    fn move_nodes(&self, starts: &[(String, Vec2)], by: Vec2, desk: &mut Desk) {
-        let Some((_, first)) = starts.first() else { return };
-        let by = if self.snaps { ((*first + by) / GRID).round() * GRID - *first } else { by };
+    fn move_nodes(&self, starts: &[(String, Vec2)], frame: Option<(usize, Vec2)>, by: Vec2, desk: &mut Desk) {
+        let first = frame.map(|(_, start)| start).or_else(|| starts.first().map(|(_, start)| *start));
+        let Some(first) = first else { return };
+        let by = if self.snaps { ((first + by) / GRID).round() * GRID - first } else { by };
+        let whole = |start: Vec2| {
+            let place = (start + by).round();
+            [place.x, place.y].map(f64::from)
+        };
         let scene = &self.scene;
-        desk.project.edit_during(Self::move_id(), "Move", |document| {
+        desk.edit_during(Self::move_id(), "Move", |document| {
             Self::pin(scene, document);
             for (name, start) in starts {
-                let place = (*start + by).round();
-                document.layout.insert(name.clone(), [place.x, place.y].map(f64::from));
+                document.layout.insert(name.clone(), whole(*start));
+            }
+            if let Some((idx, start)) = frame
+                && let Some(frame) = document.frames.get_mut(idx)
+            {
+                frame.at = whole(start);
             }
         });
     }
@@ -208,7 +245,7 @@ impl Canvas {
         let names: Vec<&str> = starts.iter().map(|(name, _)| name.as_str()).collect();
         let Some(wire) = self.wire_under(&names) else { return };
         // Where it does not fit it was only put there.
-        desk.project.edit_during(Self::move_id(), "Insert", |document| {
+        desk.edit_during(Self::move_id(), "Insert", |document| {
             let _ = document.insert_on(catalog(), &wire, names[0]);
         });
     }

@@ -2,11 +2,12 @@
 
 use egui::{EventFilter, Id, PointerButton, Pos2, Rect, Response, Sense, Vec2, WidgetInfo, WidgetType};
 
+use super::desk::{self, Desk};
 use super::gesture::{Drawing, Gesture};
 use super::node::{self, NEAR_PORTS, NodeLook};
 use super::paint::{Brush, WireLook};
 use super::scene::{HEADER, NodeShape, PortShape};
-use super::{Canvas, Desk, Request};
+use super::{Canvas, Chosen, Request};
 use crate::graph::Wire;
 
 /// Within how many points of the screen a wire is found.
@@ -40,21 +41,24 @@ impl Canvas {
             };
         }
         if back.clicked() || back.secondary_clicked() {
-            self.wire = self.hovered_wire();
+            self.chosen = self.hovered_wire().map(Chosen::Wire);
         }
         if back.clicked() && !self.was_busy {
             back.request_focus();
             ui.memory_mut(|memory| memory.surrender_focus(back.id));
-            if self.wire.is_none() && !ui.input(|input| input.modifiers.shift || input.modifiers.command) {
+            if self.chosen.is_none() && !ui.input(|input| input.modifiers.shift || input.modifiers.command) {
                 desk.selection.nodes.clear();
             }
         }
-        if back.double_clicked() && self.wire.is_none() {
-            self.open_search(super::search::Purpose::Add);
+        if back.double_clicked() {
+            match self.hovered_wire() {
+                Some(wire) => self.add_bend(&wire, desk),
+                None => self.open_search(super::search::Purpose::Add),
+            }
         }
-        back.context_menu(|ui| match self.wire.clone() {
-            Some(wire) => self.wire_menu(ui, &wire),
-            None => self.back_menu(ui),
+        back.context_menu(|ui| match self.chosen.clone() {
+            Some(Chosen::Wire(wire)) => self.wire_menu(ui, &wire),
+            _ => self.back_menu(ui),
         });
         if matches!(self.gesture, Gesture::Pan { .. }) {
             ui.ctx().set_cursor_icon(egui::CursorIcon::Grabbing);
@@ -82,7 +86,8 @@ impl Canvas {
             if unplugged.as_ref() == Some(&shape.wire) {
                 continue;
             }
-            let is_chosen = self.wire.as_ref() == Some(&shape.wire) || hovered.as_ref() == Some(&shape.wire);
+            let is_chosen = self.chosen == Some(Chosen::Wire(shape.wire.clone()))
+                || hovered.as_ref() == Some(&shape.wire);
             let at_chosen = |name: &String| desk.selection.nodes.contains(name);
             let look = match () {
                 () if is_drawing => WireLook::Dim,
@@ -92,6 +97,9 @@ impl Canvas {
                 () => WireLook::Plain,
             };
             brush.wire(shape, screen, look);
+            if !is_drawing {
+                self.bends(ui, brush, shape, desk);
+            }
             let middle = brush.view.to_screen(shape.middle());
             if is_drawing || !screen.contains(middle) {
                 continue;
@@ -100,8 +108,11 @@ impl Canvas {
             let response = ui.interact(rect, Id::new(("canvas wire", &shape.wire)), Sense::CLICK);
             response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, shape.label()));
             if response.clicked() || response.secondary_clicked() {
-                self.wire = Some(shape.wire.clone());
+                self.chosen = Some(Chosen::Wire(shape.wire.clone()));
                 desk.selection.nodes.clear();
+            }
+            if response.double_clicked() {
+                self.add_bend(&shape.wire, desk);
             }
             response.context_menu(|ui| self.wire_menu(ui, &shape.wire));
         }
@@ -130,8 +141,7 @@ impl Canvas {
             response.request_focus();
         }
         self.touch_node(ui, &response, shape, desk);
-        let default = super::super::NodeStatus::default();
-        let status = desk.statuses.get(&shape.name).unwrap_or(&default);
+        let status = &desk.status(&shape.name);
         let looks: Vec<_> = shape.ports.iter().map(|port| self.port_look(port)).collect();
         let is_drawing = matches!(self.gesture, Gesture::Connect(_));
         let look = NodeLook {
@@ -141,7 +151,7 @@ impl Canvas {
             is_dim: is_drawing && looks.iter().all(|look| *look == node::PortLook::Dim),
             time: ui.input(|input| input.time),
         };
-        let picture = desk.thumbnails.get(&shape.name).map(egui::TextureHandle::id);
+        let picture = desk.thumbnail(&shape.name).map(egui::TextureHandle::id);
         brush.node(shape, status, look, picture);
         if matches!(status.state, super::super::NodeState::Running) {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
@@ -176,7 +186,7 @@ impl Canvas {
             ui.memory_mut(|memory| memory.set_focus_lock_filter(response.id, filter));
         }
         if response.clicked() {
-            self.wire = None;
+            self.chosen = None;
             response.request_focus();
             if !adds {
                 desk.selection.only(&shape.name);
@@ -190,6 +200,8 @@ impl Canvas {
             let at = self.view.from_screen(self.pointer);
             if at.y < shape.rect.top() + HEADER {
                 self.open_name_field(&shape.name);
+            } else if shape.is_group {
+                self.go_to(desk::path(&self.group, &shape.name));
             } else {
                 desk.requests.push(Request::Show(shape.name.clone()));
             }
@@ -217,7 +229,7 @@ impl Canvas {
         let start = |name: &String| Some((name.clone(), self.scene.node(name)?.rect.min.to_vec2()));
         let starts = names.filter_map(start).collect();
         let press: Pos2 = ui.input(|input| input.pointer.press_origin()).unwrap_or(self.pointer);
-        self.gesture = Gesture::Move { starts, from: self.view.from_screen(press) };
+        self.gesture = Gesture::Move { starts, frame: None, from: self.view.from_screen(press) };
     }
 
     fn port(&mut self, ui: &egui::Ui, brush: &Brush, shape: &PortShape, desk: &mut Desk) {
@@ -228,10 +240,10 @@ impl Canvas {
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, shape.port.label()));
         let is_idle = !self.was_busy && matches!(self.gesture, Gesture::None);
         if is_idle && response.drag_started_by(PointerButton::Primary) {
-            self.gesture = Gesture::Connect(Drawing::new(desk.project.document(), &shape.port));
+            self.gesture = Gesture::Connect(Drawing::new(desk.document(), &shape.port));
         } else if is_idle && response.clicked() {
             // Of a click the wire stays at the pointer until the next.
-            let mut drawing = Drawing::new(desk.project.document(), &shape.port);
+            let mut drawing = Drawing::new(desk.document(), &shape.port);
             drawing.is_held = false;
             self.gesture = Gesture::Connect(drawing);
         }

@@ -1,7 +1,8 @@
 //! The menus under the right button: lines of the table of actions, and what concerns one node or wire.
 
+use super::desk::Desk;
 use super::search::Purpose;
-use super::{Canvas, Command, Desk, Request};
+use super::{Canvas, Chosen, Command, Request};
 use crate::editor::action::{ACTIONS, Action};
 use crate::graph::Wire;
 
@@ -9,7 +10,7 @@ impl Canvas {
     pub(super) fn back_menu(&mut self, ui: &mut egui::Ui) {
         self.lines(ui, &[Command::AddNode, Command::Paste, Command::SelectAll]);
         ui.separator();
-        self.lines(ui, &[Command::Arrange, Command::FrameAll]);
+        self.lines(ui, &[Command::AddFrame, Command::Arrange, Command::FrameAll]);
         ui.separator();
         for (command, is_on) in
             [(Command::ToggleSnap, self.snaps), (Command::ToggleMinimap, !self.hides_minimap)]
@@ -29,6 +30,17 @@ impl Canvas {
         }
         self.lines(ui, &[Command::Rename, Command::FrameSelected]);
         ui.separator();
+        self.lines(ui, &[Command::Mute, Command::Bypass]);
+        ui.separator();
+        self.lines(ui, &[Command::Group, Command::AddFrame]);
+        if desk.document().nodes.get(name).is_some_and(|node| node.inside.is_some()) {
+            self.lines(ui, &[Command::OpenGroup, Command::Ungroup]);
+            if ui.button("Save as a preset…").clicked() {
+                desk.requests.push(Request::SavePreset(name.to_owned()));
+                ui.close();
+            }
+        }
+        ui.separator();
         self.lines(ui, &[Command::Cut, Command::Copy, Command::Duplicate, Command::Delete]);
     }
 
@@ -38,8 +50,19 @@ impl Canvas {
             ui.close();
         }
         if ui.button("Unplug").clicked() {
-            self.wire = Some(wire.clone());
+            self.chosen = Some(Chosen::Wire(wire.clone()));
             self.ask(Command::Delete);
+            ui.close();
+        }
+    }
+
+    pub(super) fn frame_menu(&mut self, ui: &mut egui::Ui, idx: usize, title: &str, desk: &mut Desk) {
+        if ui.button("Rename").clicked() {
+            self.open_title_field(idx, title);
+            ui.close();
+        }
+        if ui.button("Remove the frame").clicked() {
+            Self::remove_frame(desk, idx);
             ui.close();
         }
     }

@@ -40,7 +40,7 @@ impl Canvas {
             let place = map.rect_to_screen(node.rect);
             let place = Rect::from_center_size(place.center(), place.size().max(Vec2::splat(1.5)));
             let is_selected = selection.nodes.contains(&node.name);
-            let color = theme.category(node.spec.map(|spec| spec.category));
+            let color = theme.header(node);
             painter.rect_filled(place, 1.0, if is_selected { theme.accent } else { color });
         }
         let frame = map.rect_to_screen(seen).intersect(rect.shrink(2.0));

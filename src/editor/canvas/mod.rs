@@ -9,10 +9,14 @@
 //! Limits: what is off the screen is no widget; arrow keys bring it there. Tested by gestures in `tests`,
 //! and without a window where it is geometry or a change of a document.
 
+mod bends;
 mod command;
 mod connect;
+mod desk;
 mod field;
+mod frames;
 mod gesture;
+mod groups;
 mod interact;
 mod menu;
 mod minimap;
@@ -32,6 +36,7 @@ use egui::{Pos2, Rect, Sense, TextureHandle};
 use super::{Project, Selection, Statuses};
 use crate::graph::{Document, Wire};
 use crate::nodes::catalog;
+use desk::Desk;
 use field::NameField;
 use gesture::Gesture;
 use paint::Brush;
@@ -53,8 +58,13 @@ pub struct Canvas {
     /// What the scene was made of.
     scene_of: Option<(u64, HashSet<String>)>,
     gesture: Gesture,
-    /// The wire that was clicked.
-    wire: Option<Wire>,
+    /// What was clicked and is no node.
+    chosen: Option<Chosen>,
+    /// The group whose inside is shown, `outer/inner`; empty for the graph itself.
+    group: String,
+    /// The group to be shown from the next frame on.
+    next_group: Option<String>,
+    entered: bool,
     search: Option<Search>,
     name_field: Option<NameField>,
     toast: Option<Toast>,
@@ -81,15 +91,28 @@ pub enum Request {
     Show(String),
     /// To bring the keyboard to this node's parameters.
     Inspect(String),
+    /// To write this group to a file of its own, as a preset.
+    SavePreset(String),
 }
 
-/// What a gesture works on.
-struct Desk<'a> {
-    project: &'a mut Project,
-    selection: &'a mut Selection,
-    statuses: &'a Statuses,
-    thumbnails: &'a HashMap<String, TextureHandle>,
-    requests: Vec<Request>,
+/// What is clicked and deleted besides nodes.
+#[derive(Debug, Clone, PartialEq)]
+enum Chosen {
+    Wire(Wire),
+    /// The point of a wire, by its place among the wire's.
+    Bend(Wire, usize),
+    /// By its place among the document's.
+    Frame(usize),
+}
+
+impl Chosen {
+    fn is_in(&self, document: &Document) -> bool {
+        match self {
+            Self::Wire(wire) => document.wires.contains(wire),
+            Self::Bend(wire, at) => document.bends.get(wire).is_some_and(|bends| *at < bends.len()),
+            Self::Frame(at) => *at < document.frames.len(),
+        }
+    }
 }
 
 impl Canvas {
@@ -102,10 +125,11 @@ impl Canvas {
         statuses: &Statuses,
         thumbnails: &HashMap<String, TextureHandle>,
     ) -> Vec<Request> {
-        let mut desk = Desk { project, selection, statuses, thumbnails, requests: Vec::new() };
+        self.enter(project.document());
+        let mut desk = Desk::new(project, selection, statuses, thumbnails, &self.group);
         let screen = ui.available_rect_before_wrap();
         let back = ui.allocate_rect(screen, Sense::click_and_drag());
-        let is_first = self.screen.is_none();
+        let is_first = self.screen.is_none() || std::mem::take(&mut self.entered);
         self.screen = Some(screen);
         self.view.origin = screen.min;
         self.update(&desk);
@@ -115,7 +139,7 @@ impl Canvas {
         self.watch(ui, &back);
         self.keys(ui, &mut desk);
         for command in std::mem::take(&mut self.commands) {
-            self.perform(ui.ctx(), command, &mut desk);
+            self.perform(ui, command, &mut desk);
         }
         self.was_busy = !matches!(self.gesture, Gesture::None);
         self.go_on(ui, &mut desk);
@@ -127,20 +151,24 @@ impl Canvas {
         painter.rect_filled(screen, 0.0, theme.background);
         brush.grid(screen);
         self.behind(ui, &brush, &back, &mut desk);
+        self.frames(ui, &brush, &mut desk);
         self.wires(ui, &brush, &mut desk);
         self.nodes(ui, &brush, &mut desk);
         self.drawing(ui, &brush);
-        if desk.project.document().nodes.is_empty() {
+        if desk.document().nodes.is_empty() {
             let text = "Tab adds a node";
             brush.text(screen.center(), egui::Align2::CENTER_CENTER, text, 16.0, theme.weak, 400.0);
         }
         if !self.hides_minimap {
-            self.minimap(ui, &brush, desk.selection);
+            self.minimap(ui, &brush, &desk.selection);
+        }
+        if !self.group.is_empty() {
+            self.breadcrumb(ui, screen);
         }
         self.show_name_field(ui, &mut desk);
         self.show_search(ui, &mut desk);
         self.show_toast(ui);
-        desk.requests
+        desk.close(&self.group)
     }
 
     /// To be done in the next frame.
@@ -155,15 +183,15 @@ impl Canvas {
 
     /// Makes the scene anew where the document is another, and forgets what is no more.
     fn update(&mut self, desk: &Desk) {
-        let document = desk.project.document();
-        let pictured = desk.thumbnails.keys().filter(|name| document.nodes.contains_key(*name));
+        let document = desk.document();
+        let pictured = document.nodes.keys().filter(|name| desk.thumbnail(name).is_some());
         let made_of = (desk.project.revision(), pictured.cloned().collect::<HashSet<_>>());
         if self.scene_of.as_ref() == Some(&made_of) {
             return;
         }
         self.scene = Rc::new(Scene::new(document, catalog(), &made_of.1));
         self.scene_of = Some(made_of);
-        self.wire.take_if(|wire| !document.wires.contains(wire));
+        self.chosen.take_if(|chosen| !chosen.is_in(document));
         if !self.gesture.holds(document) {
             self.gesture = Gesture::None;
         }

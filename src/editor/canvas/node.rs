@@ -42,7 +42,13 @@ impl Brush<'_> {
         let rect = self.view.rect_to_screen(node.rect);
         let radius = (7.0 * zoom).round().clamp(1.0, 16.0) as u8;
         let corners = CornerRadius::same(radius);
-        let opacity = if look.is_dim { 0.35 } else { 1.0 };
+        let opacity = if look.is_dim {
+            0.35
+        } else if node.mute {
+            0.45
+        } else {
+            1.0
+        };
         if zoom > 0.3 && !look.is_dim {
             let shadow = egui::epaint::Shadow {
                 offset: [0, (3.0 * zoom) as i8],
@@ -57,7 +63,7 @@ impl Brush<'_> {
         } else {
             self.theme.node
         };
-        let head_color = self.theme.category(node.spec.map(|spec| spec.category));
+        let head_color = self.theme.header(node);
         let head_color = head_color.gamma_multiply(opacity);
         let body = body.gamma_multiply(opacity);
         let head = Rect::from_min_size(rect.min, vec2(rect.width(), node.header * zoom));
@@ -103,7 +109,13 @@ impl Brush<'_> {
         }
         let foot = pos2(rect.left() + inset, rect.bottom() - FOOTER * 0.5 * zoom);
         let weak = self.theme.weak.gamma_multiply(opacity);
-        self.text(foot, Align2::LEFT_CENTER, &cost(status), 10.5 * zoom, weak, rect.width() * 0.62);
+        let silent = [(node.mute, "muted"), (node.bypass, "bypassed")].into_iter().find(|(is, _)| *is);
+        let (text, color) =
+            silent.map_or((cost(status), weak), |(_, word)| (word.to_owned(), self.theme.stale));
+        self.text(foot, Align2::LEFT_CENTER, &text, 10.5 * zoom, color, rect.width() * 0.62);
+        if node.bypass && !node.mute {
+            self.through(node);
+        }
         let n_left_out = left_out(status).count();
         if n_left_out > 0 {
             let badge = self.badge_rect(node);
@@ -114,6 +126,17 @@ impl Brush<'_> {
             );
             let text = format!("{n_left_out} left out");
             self.text(badge.center(), Align2::CENTER_CENTER, &text, 10.0 * zoom, weak, badge.width());
+        }
+    }
+
+    /// A line from the first input to the first output of its type, as the value goes.
+    fn through(&self, node: &NodeShape) {
+        for output in node.side(Side::Output) {
+            let input = node.side(Side::Input).find(|input| input.kind == output.kind && input.is_wired);
+            let Some(input) = input else { continue };
+            let ends = [input.at, output.at].map(|at| self.view.to_screen(at));
+            let color = self.theme.port(output.kind).gamma_multiply(0.6);
+            self.curve(&ends, (2.0 * self.view.zoom).max(1.0), color);
         }
     }
 

@@ -10,7 +10,7 @@ use std::collections::{HashMap, HashSet};
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 use crate::graph::layout::layered;
-use crate::graph::{Catalog, Document, End, NodeSpec, PortType, Wire};
+use crate::graph::{Catalog, Category, Document, End, Node, PortSpec, PortType, Wire};
 
 pub const WIDTH: f32 = 184.0;
 /// Of a header; of the second line in it that tells the type of a node that has another name.
@@ -34,7 +34,10 @@ pub struct Scene {
 pub struct NodeShape {
     pub name: String,
     pub type_id: String,
-    pub spec: Option<&'static NodeSpec>,
+    pub category: Option<Category>,
+    pub is_group: bool,
+    pub mute: bool,
+    pub bypass: bool,
     pub rect: Rect,
     pub header: f32,
     pub ports: Vec<PortShape>,
@@ -113,12 +116,15 @@ impl Scene {
             let mut shape = NodeShape {
                 name: name.clone(),
                 type_id: node.type_id.clone(),
-                spec: catalog.find(&node.type_id),
+                category: catalog.find(&node.type_id).map(|spec| spec.category),
+                is_group: node.inside.is_some(),
+                mute: node.mute,
+                bypass: node.bypass,
                 rect: Rect::ZERO,
                 header: if node.type_id == *name { HEADER } else { HEADER + SUBTITLE },
                 ports: Vec::new(),
             };
-            shape.ports = ports(&shape, wires);
+            shape.ports = ports(&shape, node, catalog, wires);
             let rows = [Side::Input, Side::Output].map(|side| shape.side(side).count());
             let picture = if pictured.contains(name) { THUMBNAIL } else { 0.0 };
             let height = shape.header + rows[0].max(rows[1]) as f32 * ROW + picture + FOOTER + 2.0 * PAD;
@@ -128,7 +134,8 @@ impl Scene {
         let by_name = nodes.iter().enumerate().map(|(idx, node)| (node.name.clone(), idx)).collect();
         let mut scene = Self { nodes, wires: Vec::new(), by_name };
         scene.place(document);
-        scene.wires = document.wires.iter().filter_map(|wire| scene.wire(wire)).collect();
+        let bends = |wire| document.bends.get(wire).map_or(&[][..], Vec::as_slice);
+        scene.wires = document.wires.iter().filter_map(|wire| scene.wire(wire, bends(wire))).collect();
         scene
     }
 
@@ -187,10 +194,12 @@ impl Scene {
         others.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, node)| node)
     }
 
-    fn wire(&self, wire: &Wire) -> Option<WireShape> {
+    fn wire(&self, wire: &Wire, bends: &[[f64; 2]]) -> Option<WireShape> {
         let from = self.port(&Port { end: wire.from.clone(), side: Side::Output })?;
         let to = self.port(&Port { end: wire.to.clone(), side: Side::Input })?;
-        Some(WireShape { wire: wire.clone(), kind: from.kind.or(to.kind), points: vec![from.at, to.at] })
+        let bends = bends.iter().map(|[x, y]| pos2(*x as f32, *y as f32));
+        let points = std::iter::once(from.at).chain(bends).chain([to.at]).collect();
+        Some(WireShape { wire: wire.clone(), kind: from.kind.or(to.kind), points })
     }
 
     /// Moves every node to where it belongs.
@@ -226,20 +235,20 @@ pub fn size_of(rect: Rect) -> [f64; 2] {
 }
 
 /// Ports of a node at the origin: those of its kind, then those that only wires name.
-fn ports(node: &NodeShape, wires: &[&Wire]) -> Vec<PortShape> {
+fn ports(shape: &NodeShape, node: &Node, catalog: Catalog, wires: &[&Wire]) -> Vec<PortShape> {
     let mut found = Vec::new();
     for side in [Side::Input, Side::Output] {
         let own_end = |wire: &&Wire| match side {
             Side::Input => wire.to.clone(),
             Side::Output => wire.from.clone(),
         };
-        let ends: Vec<End> = wires.iter().map(own_end).filter(|end| end.node == node.name).collect();
+        let ends: Vec<End> = wires.iter().map(own_end).filter(|end| end.node == shape.name).collect();
         let specs = match side {
-            Side::Input => node.spec.map_or(&[][..], |spec| spec.inputs),
-            Side::Output => node.spec.map_or(&[][..], |spec| spec.outputs),
+            Side::Input => node.inputs(catalog),
+            Side::Output => node.outputs(catalog),
         };
         let mut row = 0;
-        let mut push = |end: End, spec: Option<&crate::graph::PortSpec>, found: &mut Vec<PortShape>| {
+        let mut push = |end: End, spec: Option<PortSpec>, found: &mut Vec<PortShape>| {
             let x = if side == Side::Input { 0.0 } else { WIDTH };
             found.push(PortShape {
                 is_wired: ends.contains(&end),
@@ -247,13 +256,13 @@ fn ports(node: &NodeShape, wires: &[&Wire]) -> Vec<PortShape> {
                 kind: spec.map(|spec| spec.kind),
                 many: spec.is_some_and(|spec| spec.many),
                 doc: spec.map_or("no such port; remove its wires".to_owned(), |spec| spec.doc.to_owned()),
-                at: pos2(x, node.header + PAD + (row as f32 + 0.5) * ROW),
+                at: pos2(x, shape.header + PAD + (row as f32 + 0.5) * ROW),
                 is_required: side == Side::Input && spec.is_some_and(|spec| spec.absent.is_none()),
             });
             row += 1;
         };
-        for spec in specs {
-            push(End { node: node.name.clone(), port: spec.name.to_owned() }, Some(spec), &mut found);
+        for port in specs.unwrap_or_default() {
+            push(End::new(&shape.name, port.name), Some(port.spec), &mut found);
         }
         for end in &ends {
             let is_known = found.iter().any(|port| port.port.side == side && port.port.end == *end);

@@ -6,8 +6,9 @@
 
 use egui::{Area, Frame, Id, Key, Modifiers, Order, Pos2, RichText, ScrollArea, TextEdit, vec2};
 
+use super::Canvas;
+use super::desk::Desk;
 use super::scene::{Port, Side, WIDTH};
-use super::{Canvas, Desk};
 use crate::graph::{Document, End, Node, NodeSpec, PortSpec, Wire};
 use crate::nodes::catalog;
 
@@ -52,9 +53,8 @@ impl Purpose {
     /// # Errors
     /// Where the wire does not fit; the node is there nevertheless.
     fn add(&self, document: &mut Document, spec: &NodeSpec, place: Pos2) -> (String, Result<(), String>) {
-        let name = document.free_name(spec.id);
-        document.nodes.insert(name.clone(), Node { type_id: spec.id.to_owned(), params: Default::default() });
-        document.layout.insert(name.clone(), [place.x.round(), place.y.round()].map(f64::from));
+        let place = [place.x.round(), place.y.round()].map(f64::from);
+        let name = document.add_node(spec.id, Node::new(spec.id), place);
         let wired = match self {
             Self::Add => Ok(()),
             Self::Insert(wire) => document.insert_on(catalog(), wire, &name),
@@ -76,11 +76,9 @@ impl Purpose {
 
 /// The first port of a kind that a wire from `port` may end at.
 fn matching_port(document: &Document, port: &Port, spec: &NodeSpec) -> Option<&'static PortSpec> {
-    let node = document.nodes.get(&port.end.node)?;
-    let own = catalog().find(&node.type_id)?;
     let (kind, others) = match port.side {
-        Side::Output => (own.output(&port.end.port)?.1.kind, spec.inputs),
-        Side::Input => (own.input(&port.end.port)?.kind, spec.outputs),
+        Side::Output => (document.output(catalog(), &port.end)?.kind, spec.inputs),
+        Side::Input => (document.input(catalog(), &port.end)?.kind, spec.outputs),
     };
     others.iter().find(|other| other.kind == kind)
 }
@@ -139,7 +137,7 @@ impl Canvas {
         if pressed(Key::Escape) {
             return;
         }
-        let kinds = found(&search.text, &search.purpose, desk.project.document());
+        let kinds = found(&search.text, &search.purpose, desk.document());
         let last = kinds.len().saturating_sub(1);
         if pressed(Key::ArrowDown) {
             search.chosen += 1;
@@ -227,7 +225,7 @@ impl Canvas {
         };
         let scene = self.scene.clone();
         let mut added = None;
-        desk.project.edit(&format!("Add {}", spec.id), |document| {
+        desk.edit(&format!("Add {}", spec.id), |document| {
             Self::pin(&scene, document);
             added = Some(search.purpose.add(document, spec, place));
         });

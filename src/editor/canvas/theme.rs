@@ -6,6 +6,7 @@
 
 use egui::Color32;
 
+use super::scene::NodeShape;
 use crate::graph::{Category, PortType};
 
 const fn hex(rgb: u32) -> Color32 {
@@ -65,7 +66,12 @@ impl Theme {
         if ui.visuals().dark_mode { &DARK } else { &LIGHT }
     }
 
-    /// A node's header; gray for an unknown kind.
+    /// A node's header.
+    pub fn header(&self, node: &NodeShape) -> Color32 {
+        if node.is_group { hex(0x3b_45_54) } else { self.category(node.category) }
+    }
+
+    /// Of a category; gray for an unknown kind.
     pub fn category(&self, category: Option<Category>) -> Color32 {
         match category {
             Some(Category::Volume) => hex(0x1f_7d_78),

@@ -3,7 +3,74 @@
 //! serde_json's own pretty printer sets every component of a vector on a line of its own. Tested in the
 //! tests of the document.
 
-use serde_json::Value as Json;
+use serde_json::{Map, Value as Json};
+
+use super::{Document, Node};
+use crate::graph::spec::json_number;
+
+/// The fields of a document, in the order of the file; what is empty has none, but for nodes and wires.
+pub fn fields(document: &Document) -> Map<String, Json> {
+    let mut fields = Map::new();
+    let mut push = |name: &str, json: Json| drop(fields.insert(name.to_owned(), json));
+    let object = |entries: Vec<(String, Json)>| Json::Object(entries.into_iter().collect());
+    if !document.about.is_empty() {
+        push("about", document.about.clone().into());
+    }
+    let nodes = document.nodes.iter().map(|(name, node)| (name.clone(), Json::Object(node_fields(node))));
+    push("nodes", object(nodes.collect()));
+    let wires = document.wires.iter().map(|wire| wire.to_string().into());
+    push("wires", Json::Array(wires.collect()));
+    if !document.inputs.is_empty() {
+        let inputs = document.inputs.iter().map(|(name, ends)| {
+            let mut ends: Vec<Json> = ends.iter().map(|end| end.to_string().into()).collect();
+            (name.clone(), if ends.len() == 1 { ends.remove(0) } else { Json::Array(ends) })
+        });
+        push("inputs", object(inputs.collect()));
+    }
+    if !document.outputs.is_empty() {
+        let outputs = document.outputs.iter().map(|(name, end)| (name.clone(), end.to_string().into()));
+        push("outputs", object(outputs.collect()));
+    }
+    if !document.layout.is_empty() {
+        let places = document.layout.iter().map(|(name, place)| (name.clone(), vector(place)));
+        push("layout", object(places.collect()));
+    }
+    if !document.bends.is_empty() {
+        let bends = document.bends.iter().map(|(wire, points)| {
+            (wire.to_string(), Json::Array(points.iter().map(|point| vector(point)).collect()))
+        });
+        push("bends", object(bends.collect()));
+    }
+    if !document.frames.is_empty() {
+        let frames = document.frames.iter().map(|frame| {
+            let mut fields = vec![
+                ("title".to_owned(), frame.title.clone().into()),
+                ("at".to_owned(), vector(&frame.at)),
+                ("size".to_owned(), vector(&frame.size)),
+            ];
+            fields.extend(frame.color.map(|color| ("color".to_owned(), vector(&color))));
+            object(fields)
+        });
+        push("frames", Json::Array(frames.collect()));
+    }
+    fields
+}
+
+fn node_fields(node: &Node) -> Map<String, Json> {
+    let mut fields = Map::from_iter([("type".to_owned(), node.type_id.clone().into())]);
+    for (name, is_set) in [("mute", node.mute), ("bypass", node.bypass)] {
+        if is_set {
+            fields.insert(name.to_owned(), true.into());
+        }
+    }
+    fields.extend(node.params.clone());
+    fields.extend(node.inside.iter().flat_map(|inside| self::fields(inside)));
+    fields
+}
+
+fn vector(values: &[f64]) -> Json {
+    Json::Array(values.iter().map(|x| Json::Number(json_number(*x))).collect())
+}
 
 /// The text of `json` with a line end.
 pub fn pretty(json: &Json) -> String {

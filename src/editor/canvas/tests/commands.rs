@@ -94,7 +94,7 @@ fn a_node_is_renamed() {
     harness.event(Event::Text("moon".to_owned()));
     harness.run_steps(2);
     press(&mut harness, Modifiers::NONE, Key::Enter);
-    assert!(harness.query_by_label("there is a node 'moon' already; write another name").is_some());
+    assert!(harness.query_by_label("there is a node 'moon' already; 'moon_2' is free").is_some());
     assert_eq!(harness.state().names()[0], "dawn");
 }
 

@@ -68,7 +68,8 @@ fn a_cycle_is_refused_with_its_path() {
     let mut harness = window(text);
     drag_labels(&mut harness, "output b.image", "input a.image");
     assert_eq!(harness.state().wires(), ["a.image -> b.image"]);
-    let reason = "a.image cannot read b.image: the wire would close the cycle a -> b -> a";
+    let reason =
+        "'b.image -> a.image' would close the cycle a -> b -> a; wire it from a node that does not read 'a'";
     assert!(toast(&harness, reason));
 }
 

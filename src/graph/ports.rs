@@ -1,0 +1,69 @@
+//! The ports of a node: those of its kind, or those of a group, which have the types of what they stand for.
+
+use super::document::{Document, End, Node};
+use super::spec::{Catalog, PortSpec};
+
+/// A port as it is seen from outside.
+#[derive(Debug, Clone, Copy)]
+pub struct Port<'a> {
+    /// Name in a wire.
+    pub name: &'a str,
+    /// What it takes or gives. Of a group the port inside, whose own name differs.
+    pub spec: PortSpec,
+}
+
+impl Node {
+    /// What can be wired into it; `None` for an unknown kind.
+    ///
+    /// A port of a group that stands for several takes many wires only where all of them do, and may stay
+    /// empty only where all of them may.
+    pub fn inputs(&self, catalog: Catalog) -> Option<Vec<Port<'_>>> {
+        let Some(inside) = &self.inside else {
+            return Some(own(catalog.find(&self.type_id)?.inputs));
+        };
+        let of_group = inside.inputs.iter().filter_map(|(name, ends)| {
+            let mut specs = ends.iter().filter_map(|end| inside.input(catalog, end));
+            let first = specs.next()?;
+            let spec = specs.fold(first, |all, spec| PortSpec {
+                many: all.many && spec.many,
+                absent: all.absent.and(spec.absent),
+                ..all
+            });
+            Some(Port { name, spec })
+        });
+        Some(of_group.collect())
+    }
+
+    /// What it gives; `None` for an unknown kind.
+    pub fn outputs(&self, catalog: Catalog) -> Option<Vec<Port<'_>>> {
+        let Some(inside) = &self.inside else {
+            return Some(own(catalog.find(&self.type_id)?.outputs));
+        };
+        let of_group = inside.outputs.iter();
+        Some(
+            of_group
+                .filter_map(|(name, end)| Some(Port { name, spec: inside.output(catalog, end)? }))
+                .collect(),
+        )
+    }
+}
+
+impl Document {
+    /// The input at the end of a wire, if there is one.
+    pub fn input(&self, catalog: Catalog, end: &End) -> Option<PortSpec> {
+        find(self.nodes.get(&end.node)?.inputs(catalog)?, &end.port)
+    }
+
+    /// The output at the start of a wire, if there is one.
+    pub fn output(&self, catalog: Catalog, end: &End) -> Option<PortSpec> {
+        find(self.nodes.get(&end.node)?.outputs(catalog)?, &end.port)
+    }
+}
+
+fn own(specs: &'static [PortSpec]) -> Vec<Port<'static>> {
+    specs.iter().map(|spec| Port { name: spec.name, spec: *spec }).collect()
+}
+
+fn find(ports: Vec<Port>, name: &str) -> Option<PortSpec> {
+    ports.iter().find(|port| port.name == name).map(|port| port.spec)
+}
