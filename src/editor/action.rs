@@ -4,6 +4,8 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use super::canvas::Command;
+
 /// What can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
@@ -59,6 +61,8 @@ pub enum Action {
     Retry,
     /// The page of shortcuts.
     Shortcuts,
+    /// A command of the canvas, whose keys count while they are meant for it.
+    Canvas(Command),
 }
 
 /// An action as menus, palette and the page of shortcuts show it.
@@ -87,12 +91,21 @@ const fn spec(
     ActionSpec { action, label, menu, shortcut }
 }
 
+const fn canvas(
+    command: Command,
+    menu: &'static str,
+    label: &'static str,
+    shortcut: Option<KeyboardShortcut>,
+) -> ActionSpec {
+    spec(Action::Canvas(command), menu, label, shortcut)
+}
+
 const NONE: Modifiers = Modifiers::NONE;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// The menus, in their order.
-pub const MENUS: [&str; 4] = ["File", "Edit", "View", "Help"];
+pub const MENUS: [&str; 5] = ["File", "Edit", "Node", "View", "Help"];
 
 /// All actions, in the order of their menus. A shortcut with more modifiers stands before the one with
 /// fewer, because a shortcut is taken by the first that fits.
@@ -105,6 +118,26 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::Quit, "File", "Quit", key(COMMAND, Key::Q)),
     spec(Action::Redo, "Edit", "Redo", key(COMMAND_SHIFT, Key::Z)),
     spec(Action::Undo, "Edit", "Undo", key(COMMAND, Key::Z)),
+    canvas(Command::OpenGroup, "Node", "Open the group", key(COMMAND, Key::ArrowDown)),
+    canvas(Command::LeaveGroup, "Node", "Leave the group", key(COMMAND, Key::ArrowUp)),
+    canvas(Command::AddFrame, "Node", "Frame with a comment", key(COMMAND_SHIFT, Key::F)),
+    canvas(Command::Ungroup, "Node", "Ungroup", key(COMMAND_SHIFT, Key::G)),
+    canvas(Command::Group, "Node", "Group", key(COMMAND, Key::G)),
+    canvas(Command::Mute, "Node", "Mute", key(NONE, Key::M)),
+    canvas(Command::Bypass, "Node", "Bypass", key(NONE, Key::B)),
+    canvas(Command::AddNode, "Node", "Add a node", key(NONE, Key::Tab)),
+    canvas(Command::Cut, "Edit", "Cut", key(COMMAND, Key::X)),
+    canvas(Command::Copy, "Edit", "Copy", key(COMMAND, Key::C)),
+    canvas(Command::Paste, "Edit", "Paste", key(COMMAND, Key::V)),
+    canvas(Command::Duplicate, "Edit", "Duplicate", key(COMMAND, Key::D)),
+    canvas(Command::Delete, "Edit", "Delete", key(NONE, Key::Delete)),
+    canvas(Command::SelectAll, "Edit", "Select all", key(COMMAND, Key::A)),
+    canvas(Command::Rename, "Node", "Rename", key(NONE, Key::F2)),
+    canvas(Command::FrameAll, "View", "Show all nodes", key(NONE, Key::Home)),
+    canvas(Command::FrameSelected, "View", "Show selected nodes", key(NONE, Key::F)),
+    canvas(Command::Arrange, "Node", "Arrange nodes", key(NONE, Key::L)),
+    canvas(Command::ToggleSnap, "View", "Snap to the grid", None),
+    canvas(Command::ToggleMinimap, "View", "Minimap", None),
     spec(Action::Palette, "View", "Command palette", key(COMMAND_SHIFT, Key::P)),
     spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)),
     spec(Action::ActualSize, "View", "Picture at 1:1", key(COMMAND, Key::Num1)),
@@ -125,12 +158,14 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::Shortcuts, "Help", "Shortcuts", key(NONE, Key::Questionmark)),
 ];
 
-/// The actions whose keys were pressed; a text field that has the keyboard keeps its own.
-pub fn pressed(context: &egui::Context) -> Vec<Action> {
+/// The actions whose keys were pressed, those of the canvas only while keys are meant for it; a text field
+/// that has the keyboard keeps its own.
+pub fn pressed(context: &egui::Context, canvas_has_keys: bool) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();
     }
-    let with_key = ACTIONS.iter().filter_map(|spec| Some((spec.action, spec.shortcut?)));
+    let heard = ACTIONS.iter().filter(|spec| canvas_has_keys || !matches!(spec.action, Action::Canvas(_)));
+    let with_key = heard.filter_map(|spec| Some((spec.action, spec.shortcut?)));
     let taken = with_key.filter(|(_, shortcut)| context.input_mut(|input| input.consume_shortcut(shortcut)));
     taken.map(|(action, _)| action).collect()
 }

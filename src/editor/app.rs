@@ -6,7 +6,7 @@ mod solving;
 use std::collections::HashMap;
 use std::path::Path;
 
-use egui::{CentralPanel, Frame, Panel, Ui};
+use egui::{CentralPanel, Frame, Panel, TextureHandle, Ui};
 
 use super::action::{self, Action};
 use super::canvas::{Canvas, Request};
@@ -52,6 +52,8 @@ pub struct App {
     chosen: Option<String>,
     look: Option<Look>,
     pictures: HashMap<String, Picture>,
+    /// Small pictures of what nodes give, by name.
+    thumbnails: HashMap<String, TextureHandle>,
     lattice: Option<Lattice>,
     asked: Option<solving::Asked>,
     /// The revision that was last looked through for frames.
@@ -85,6 +87,7 @@ impl App {
             chosen: None,
             look: None,
             pictures: HashMap::new(),
+            thumbnails: HashMap::new(),
             lattice: None,
             asked: None,
             spanned: None,
@@ -125,6 +128,7 @@ impl App {
             Action::Light => self.theme_to(context, ThemeChoice::Light),
             Action::System => self.theme_to(context, ThemeChoice::System),
             Action::Retry => self.asked = None,
+            Action::Canvas(command) => self.canvas.ask(command),
         }
     }
 
@@ -206,9 +210,10 @@ impl App {
         self.settings.inspector_width = shown.response.rect.width();
         let height = self.settings.canvas_height;
         let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
-        let shown = panel
-            .frame(Frame::new())
-            .show(ui, |ui| self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses));
+        let shown = panel.frame(Frame::new()).show(ui, |ui| {
+            let (project, selection) = (&mut self.project, &mut self.selection);
+            self.canvas.show(ui, project, selection, &self.statuses, &self.thumbnails)
+        });
         self.settings.canvas_height = shown.response.rect.height();
         for request in shown.inner {
             match request {
@@ -246,7 +251,7 @@ impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
         self.listen();
-        for action in action::pressed(&context) {
+        for action in action::pressed(&context, self.is_open && self.canvas.has_keys()) {
             if self.possible().is(action) {
                 self.perform(&context, action);
             }
