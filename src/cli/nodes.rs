@@ -199,6 +199,8 @@ impl ParamJson {
             ParamKind::Int => ("int", None, None, None),
             ParamKind::Bool => ("bool", None, None, None),
             ParamKind::Text => ("text", None, None, None),
+            ParamKind::Grid => ("grid", None, None, None),
+            ParamKind::Curve(columns) => ("curve", Some(columns.into()), None, None),
             ParamKind::IntChoice(choices) => ("int_choice", Some(choices.into()), None, None),
             ParamKind::Choice(choices) => ("choice", Some(choices.into()), None, None),
             ParamKind::Path => ("path", None, None, None),

@@ -112,7 +112,7 @@ impl eframe::App for App {
             self.perform(action);
         }
         egui::Panel::right("inspector").default_size(300.0).show(ui, |ui| {
-            inspector::show(ui, &mut self.project, &self.selection);
+            inspector::show(ui, &mut self.project, &self.selection, &self.statuses);
         });
         egui::Panel::bottom("canvas").resizable(true).default_size(360.0).show(ui, |ui| {
             self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses);

@@ -34,7 +34,7 @@ pub use eval::{
 };
 pub use file::FileState;
 pub use key::Key;
-pub use params::{Moment, ParamProblem, ParamValue, Params};
+pub use params::{Moment, ParamProblem, ParamValue, Params, check_value};
 pub use plan::{Job, Plan, Source, Target, Work};
 pub use report::{Decision, Report, StageWork};
 pub use spec::{Catalog, Category, Limits, NodeSpec, ParamKind, ParamSpec, PortSpec, PortType, Timing};

@@ -1,0 +1,59 @@
+//! Colors: linear Rec. 709 light, which may exceed 1.
+//!
+//! A picker knows 0 to 1 alone. So a color is shown as a strength (its largest component) times a color whose largest
+//! component is 1; a share, which is bounded by 1 (an albedo), is the picker's color as it is.
+
+use egui::{Ui, color_picker::color_edit_button_rgb};
+
+use super::number::{entry, named, text_of};
+use super::row::component;
+use super::slot::Slot;
+
+/// A swatch that opens a picker, the strength, and the three numbers.
+pub fn show(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
+    let mut message = None;
+    ui.horizontal(|ui| {
+        let (strength, color) = split(slot);
+        let mut picked = color.map(|x| x as f32);
+        let response = color_edit_button_rgb(ui, &mut picked);
+        named(&response, &format!("{} picker", slot.name()));
+        if picked != color.map(|x| x as f32) {
+            // Four digits are finer than a picker's 8 bits.
+            let picked = picked.map(|x| strength * f64::from((x * 1e4).round()) / 1e4);
+            message = slot.set_numbers(&picked, Some(slot.id().with("picker"))).err();
+        }
+        if is_share(slot) {
+            return;
+        }
+        ui.weak("strength");
+        let (id, name) = (slot.id().with("strength"), format!("{}.strength", slot.name()));
+        let typed = entry(ui, id, &name, &text_of(strength), 64.0, |text| {
+            let wanted = super::expression::evaluate(text)?;
+            slot.set_numbers(&color.map(|x| x * wanted), None)
+        });
+        message = message.take().or(typed);
+    });
+    ui.horizontal(|ui| {
+        let width = ui.available_width() / 3.0 - 28.0;
+        for (part, label) in ["r", "g", "b"].into_iter().enumerate() {
+            message = message.take().or_else(|| component(ui, slot, part, label, width));
+        }
+    });
+    message
+}
+
+fn is_share(slot: &Slot) -> bool {
+    slot.spec.hard.max.is_some_and(|max| max <= 1.0)
+}
+
+/// Strength and color; the color of black is white, so that a strength can be given to it.
+fn split(slot: &Slot) -> (f64, [f64; 3]) {
+    let values = slot.numbers();
+    let rgb = [values[0], values[1], values[2]];
+    let largest = rgb.iter().copied().fold(0.0, f64::max);
+    match () {
+        () if is_share(slot) => (1.0, rgb),
+        () if largest <= 0.0 => (0.0, [1.0; 3]),
+        () => (largest, rgb.map(|x| (x / largest).max(0.0))),
+    }
+}
