@@ -5,9 +5,20 @@
 //! Limits: finite numbers and column names without commas, quotes and line ends, which nodes see to. Tested by the text.
 
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::atomic::{self, WriteError};
+
+/// Why a table is not written.
+#[derive(Debug, thiserror::Error)]
+pub enum TableError {
+    /// The ending says no format that is written.
+    #[error("cannot write {}: tables are written as .csv; change the ending", .0.display())]
+    Ending(PathBuf),
+    /// The file could not be written.
+    #[error(transparent)]
+    Write(#[from] WriteError),
+}
 
 /// Named columns of numbers.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,12 +65,24 @@ impl Table {
     }
 }
 
+/// Refuses a name that does not end in `.csv`, case ignored.
+///
+/// # Errors
+/// [`TableError::Ending`].
+pub fn check_ending(path: &Path) -> Result<(), TableError> {
+    match path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("csv")) {
+        true => Ok(()),
+        false => Err(TableError::Ending(path.to_owned())),
+    }
+}
+
 /// Writes a table as CSV.
 ///
 /// # Errors
-/// Where the file cannot be written.
-pub fn write(path: &Path, table: &Table) -> Result<(), WriteError> {
-    atomic::write(path, table.to_csv().as_bytes())
+/// For another ending, and where the file cannot be written.
+pub fn write(path: &Path, table: &Table) -> Result<(), TableError> {
+    check_ending(path)?;
+    Ok(atomic::write(path, table.to_csv().as_bytes())?)
 }
 
 #[cfg(test)]
@@ -80,5 +103,7 @@ mod tests {
         let path = folder.path().join("t.csv");
         write(&path, &table).unwrap();
         assert_eq!(std::fs::read_to_string(path).unwrap(), text);
+        let refused = write(Path::new("t.exr"), &table).unwrap_err().to_string();
+        assert_eq!(refused, "cannot write t.exr: tables are written as .csv; change the ending");
     }
 }

@@ -32,6 +32,7 @@ mod principal_propagation;
 mod probe;
 mod raymarch;
 mod save_image;
+mod save_table;
 mod scalar;
 mod shadow;
 mod shape;
@@ -68,6 +69,7 @@ pub static KINDS: &[NodeKind] = &[
     probe::KIND,
     tone_map::KIND,
     save_image::KIND,
+    save_table::KIND,
 ];
 
 /// A node as the session runs it.

@@ -386,3 +386,32 @@ fn a_curve_is_drawn() {
     assert_eq!(param(&harness, "points"), points);
     assert!(harness.state_mut().project.undo().is_none());
 }
+
+/// For looking: `cargo test inspector::tests::pictures -- --ignored` writes PNG files to `out/`.
+#[test]
+#[ignore = "draws pictures for people to look at"]
+fn pictures() {
+    let out = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("out");
+    std::fs::create_dir_all(&out).unwrap();
+    let points = json!([[0, 0.1, 0, 0.3, 0], [0.3, 0.9, 0.2, 0.2, 0.2], [1, 1, 0.9, 0.6, 1]]);
+    let nodes = json!({
+        "cloud": { "type": "load_vdb", "path": "../data/plume.vdb" },
+        "medium": { "type": "medium", "g": { "keys": [[12, 0.5], [20, 0.7]] }, "density_scale": 12, "emission": {} },
+        "sun": { "type": "sun", "direction": [0.3, -0.4, 0.86], "irradiance": [20, 18, 15] },
+        "look": { "type": "transfer_function", "points": points },
+        "camera": { "type": "camera" }
+    });
+    for name in ["medium", "sun", "look", "camera", "cloud"] {
+        for theme in [egui::Theme::Light, egui::Theme::Dark] {
+            let mut harness = inspector(nodes.clone(), json!(["cloud.volume -> medium.volume"]), &[name]);
+            harness.ctx.set_theme(theme);
+            harness.set_size(vec2(320.0, 860.0));
+            harness.run();
+            if name == "medium" {
+                type_into(&mut harness, "medium.density_scale", "-1");
+            }
+            let picture = harness.render().unwrap();
+            picture.save(out.join(format!("inspector_{name}_{theme:?}.png"))).unwrap();
+        }
+    }
+}
