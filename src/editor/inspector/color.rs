@@ -17,7 +17,8 @@ pub fn show(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
         let mut picked = color.map(|x| x as f32);
         let response = color_edit_button_rgb(ui, &mut picked);
         named(&response, &format!("{} picker", slot.name()));
-        if picked != color.map(|x| x as f32) {
+        // The picker's way there and back through hue and saturation is not exact: only a change counts.
+        if response.changed() {
             // Four digits are finer than a picker's 8 bits.
             let picked = picked.map(|x| strength * f64::from((x * 1e4).round()) / 1e4);
             message = slot.set_numbers(&picked, Some(slot.id().with("picker"))).err();

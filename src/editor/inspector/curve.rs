@@ -100,11 +100,10 @@ fn point(ui: &mut Ui, slot: &mut Slot, rows: &Rows, columns: &[&str], chosen: us
         }
         if let Some(rgb) = rgb_of(columns) {
             let row = &rows[chosen];
-            let before = [row[rgb], row[rgb + 1], row[rgb + 2]].map(|x| x as f32);
-            let mut picked = before;
+            let mut picked = [row[rgb], row[rgb + 1], row[rgb + 2]].map(|x| x as f32);
             let response = egui::color_picker::color_edit_button_rgb(ui, &mut picked);
             named(&response, &format!("{} picker", slot.name()));
-            if picked != before {
+            if response.changed() {
                 let mut rows = rows.clone();
                 for (n, x) in picked.into_iter().enumerate() {
                     rows[chosen][rgb + n] = f64::from((x * 1e4).round()) / 1e4;

@@ -97,6 +97,8 @@ pub fn handle(ui: &mut Ui, slot: &mut Slot, part: usize, label: &str, suffix: &s
     let response = ui.add(Label::new(text).selectable(false).truncate().sense(Sense::click_and_drag()));
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_text(help(slot));
     named(&response, &format!("{}{suffix} drag", slot.name()));
+    // Readers know a label by its text and would not find the name.
+    ui.ctx().accesskit_node_builder(response.id, |node| node.set_role(egui::accesskit::Role::SpinButton));
     let id = slot.id().with(("drag", part));
     if response.drag_started() {
         slot.end_gesture();

@@ -133,14 +133,14 @@ fn below(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
 
 /// Numbers side by side, three or four in a line.
 fn vector(ui: &mut Ui, slot: &mut Slot, count: usize) -> Option<String> {
-    const AXES: [&str; 3] = ["x", "y", "z"];
     let columns = if count > 4 { 4 } else { count };
     let mut message = None;
     for line in 0..count.div_ceil(columns) {
         ui.horizontal(|ui| {
             let width = ui.available_width() / columns as f32;
             for part in line * columns..count.min((line + 1) * columns) {
-                let label = if count == 3 { AXES[part].to_owned() } else { part.to_string() };
+                let axis = ["x", "y", "z"].get(part).filter(|_| count == 3);
+                let label = axis.map_or_else(|| part.to_string(), |axis| (*axis).to_owned());
                 let suffix = format!(".{label}");
                 let taken = if count <= 4 {
                     message = message.take().or_else(|| handle(ui, slot, part, &label, &suffix));

@@ -6,7 +6,7 @@ use crate::image::{ALPHA, Colormap, Image};
 use crate::nodes::testing::{Filling, Scene, gpu, output, run};
 use crate::volume::{Dense, Volume};
 
-/// 1 + 2x + 3y − z of the world's meters at the voxels of a box 4 x 6 x 8 m that begins at its corner.
+/// Of the world's meters, at the voxels of a box 4 x 6 x 8 m whose corner is the origin.
 fn field(p: DVec3) -> f64 {
     20.0 + 2.0 * p.x + 3.0 * p.y - p.z
 }
@@ -15,9 +15,9 @@ fn volume() -> Value {
     let mut dense = Dense::centered([8, 12, 16], 0.5);
     dense.world_from_index =
         DMat4::from_translation(DVec3::splat(0.25)) * DMat4::from_scale(DVec3::splat(0.5));
-    for idx in 0..dense.values.len() {
+    for (idx, value) in dense.values.iter_mut().enumerate() {
         let index = DVec3::new((idx % 8) as f64, (idx / 8 % 12) as f64, (idx / 96) as f64);
-        dense.values[idx] = field(dense.world_from_index.transform_point3(index)) as f32;
+        *value = field(dense.world_from_index.transform_point3(index)) as f32;
     }
     Value::new(PortType::Volume, 0, Volume::from_shape(dense, None, DMat4::IDENTITY))
 }

@@ -5,7 +5,7 @@
 //! taken in the middle of the step, the steps of a ray equally long. Nothing is lit: the colors are what is seen. Values
 //! are interpolated and then looked up. Radiance, coverage.
 //! Limits: a border of one voxel fades to what stands outside, so a curve that colors values between the two draws a
-//! shell there. Tested by the closed form of one color, and against [`oracle`] in f64.
+//! shell there. Tested by the closed form of one color, and against an oracle in f64.
 
 use glam::{DMat3, DVec3};
 
