@@ -54,9 +54,10 @@ impl<'a> Slot<'a> {
         &self.nodes[0]
     }
 
-    /// The frame that is looked at, the first where none is.
+    /// The frame that is looked at; where none is, that of the first key, whose value then holds.
     pub fn frame(&self) -> i64 {
-        self.document().frame.unwrap_or(0)
+        let first = || Some(self.keys()?.first()?[0].as_f64()? as i64);
+        self.document().frame.or_else(first).unwrap_or(0)
     }
 
     fn moment(&self) -> Moment {
