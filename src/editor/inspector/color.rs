@@ -13,14 +13,14 @@ use super::slot::Slot;
 pub fn show(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
     let mut message = None;
     ui.horizontal(|ui| {
-        let (strength, color) = split(slot);
-        let mut picked = color.map(|x| x as f32);
+        let Split { strength, color, shown, picks } = split(slot);
+        let mut picked = shown.map(|x| x as f32);
         let response = color_edit_button_rgb(ui, &mut picked);
         named(&response, &format!("{} picker", slot.name()));
         // The picker's way there and back through hue and saturation is not exact: only a change counts.
         if response.changed() {
             // Four digits are finer than a picker's 8 bits.
-            let picked = picked.map(|x| strength * f64::from((x * 1e4).round()) / 1e4);
+            let picked = picked.map(|x| picks * f64::from((x * 1e4).round()) / 1e4);
             message = slot.set_numbers(&picked, Some(slot.id().with("picker"))).err();
         }
         if is_share(slot) {
@@ -37,7 +37,8 @@ pub fn show(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
     ui.horizontal(|ui| {
         let width = ui.available_width() / 3.0 - 28.0;
         for (part, label) in ["r", "g", "b"].into_iter().enumerate() {
-            message = message.take().or_else(|| component(ui, slot, part, label, width));
+            let changed = component(ui, slot, part, label, width);
+            message = message.take().or(changed);
         }
     });
     message
@@ -47,14 +48,29 @@ fn is_share(slot: &Slot) -> bool {
     slot.spec.hard.max.is_some_and(|max| max <= 1.0)
 }
 
-/// Strength and color; the color of black is white, so that a strength can be given to it.
-fn split(slot: &Slot) -> (f64, [f64; 3]) {
+/// A color as strength times color.
+struct Split {
+    /// The largest component.
+    strength: f64,
+    /// What a strength multiplies.
+    color: [f64; 3],
+    /// What the swatch shows.
+    shown: [f64; 3],
+    /// What a picked color is multiplied by.
+    picks: f64,
+}
+
+/// Black is given a strength as white is, and takes a picked color as it is: else it would stay black.
+fn split(slot: &Slot) -> Split {
     let values = slot.numbers();
     let rgb = [values[0], values[1], values[2]];
     let largest = rgb.iter().copied().fold(0.0, f64::max);
     match () {
-        () if is_share(slot) => (1.0, rgb),
-        () if largest <= 0.0 => (0.0, [1.0; 3]),
-        () => (largest, rgb.map(|x| (x / largest).max(0.0))),
+        () if is_share(slot) => Split { strength: 1.0, color: rgb, shown: rgb, picks: 1.0 },
+        () if largest <= 0.0 => Split { strength: 0.0, color: [1.0; 3], shown: [0.0; 3], picks: 1.0 },
+        () => {
+            let color = rgb.map(|x| (x / largest).max(0.0));
+            Split { strength: largest, color, shown: color, picks: largest }
+        }
     }
 }

@@ -65,7 +65,8 @@ pub fn show(ui: &mut Ui, slot: &mut Slot, columns: &[&str]) -> Option<String> {
     chosen = chosen.min(rows.len() - 1);
     ui.data_mut(|data| data.insert_temp(chosen_id, chosen));
     let changed = point(ui, slot, &rows, columns, chosen);
-    message.or(changed).or_else(|| maps(ui, slot, &rows, columns))
+    let mapped = maps(ui, slot, &rows, columns);
+    message.or(changed).or(mapped)
 }
 
 /// A point that is dragged or removed.

@@ -24,7 +24,8 @@ pub fn show(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
             for (part, label) in ["x", "y", "z"].into_iter().enumerate() {
                 ui.horizontal(|ui| {
                     let width = ui.available_width() - 28.0;
-                    message = message.take().or_else(|| component(ui, slot, part, label, width));
+                    let changed = component(ui, slot, part, label, width);
+                    message = message.take().or(changed);
                 });
             }
         });

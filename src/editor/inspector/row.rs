@@ -1,9 +1,11 @@
 //! A parameter: its label, its control, what may be done with it, and what is wrong with it.
 
-use egui::{Button, ComboBox, RichText, Ui, vec2};
+use egui::{
+    Button, Color32, ComboBox, Rect, RichText, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, vec2,
+};
 use serde_json::{Map, Value as Json};
 
-use super::number::{self, entry, field, handle, help, named, slider};
+use super::number::{entry, field, handle, help, named, slider};
 use super::slot::Slot;
 use super::{color, curve, direction, grids, path};
 use crate::graph::ParamKind;
@@ -45,7 +47,8 @@ fn row(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
                 tail(ui, slot);
                 dragged.or(typed)
             });
-            line.inner.or_else(|| slider(ui, slot, 0))
+            let slid = slider(ui, slot, 0);
+            line.inner.or(slid)
         }
         ParamKind::Bool
         | ParamKind::Text
@@ -111,9 +114,11 @@ fn below(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
         ParamKind::Float | ParamKind::Int => {
             let typed = ui.horizontal(|ui| {
                 let dragged = in_label(ui, |ui| handle(ui, slot, 0, "↔", ""));
-                dragged.or(field(ui, slot, 0, "", width_before_tail(ui, slot)))
+                let typed = field(ui, slot, 0, "", width_before_tail(ui, slot));
+                dragged.or(typed)
             });
-            typed.inner.or_else(|| slider(ui, slot, 0))
+            let slid = slider(ui, slot, 0);
+            typed.inner.or(slid)
         }
         ParamKind::Vector(count) => vector(ui, slot, count),
         ParamKind::Rgb => color::show(ui, slot),
@@ -143,12 +148,14 @@ fn vector(ui: &mut Ui, slot: &mut Slot, count: usize) -> Option<String> {
                 let label = axis.map_or_else(|| part.to_string(), |axis| (*axis).to_owned());
                 let suffix = format!(".{label}");
                 let taken = if count <= 4 {
-                    message = message.take().or_else(|| handle(ui, slot, part, &label, &suffix));
+                    let dragged = handle(ui, slot, part, &label, &suffix);
+                    message = message.take().or(dragged);
                     22.0
                 } else {
                     10.0
                 };
-                message = message.take().or_else(|| field(ui, slot, part, &suffix, width - taken - 8.0));
+                let typed = field(ui, slot, part, &suffix, width - taken - 8.0);
+                message = message.take().or(typed);
             }
         });
     }
@@ -254,20 +261,34 @@ fn key(ui: &mut Ui, slot: &mut Slot) {
     let keys = slot.keys().unwrap_or_default();
     let frame = slot.frame();
     let is_here = keys.iter().any(|key| key[0].as_f64() == Some(frame as f64));
-    let sign = RichText::new(if is_here { "◆" } else { "◇" });
-    let sign = if keys.is_empty() { sign.weak() } else { sign.color(ui.visuals().warn_fg_color) };
-    let button = Button::new(sign).frame(false).min_size(vec2(BUTTON, BUTTON));
     let what = if is_here { "Remove the key" } else { "Add a key" };
-    let response = ui.add(button).on_hover_ui(|ui| {
+    let (rect, response) = ui.allocate_exact_size(vec2(BUTTON, BUTTON), Sense::click());
+    diamond(ui, rect, is_here, keys.is_empty(), response.hovered() || response.has_focus());
+    let response = response.on_hover_ui(|ui| {
         ui.label(format!("{what} at frame {frame}"));
         for key in &keys {
             ui.weak(format!("frame {}: {}", key[0], key[1]));
         }
     });
+    response.widget_info(|| WidgetInfo::selected(WidgetType::Checkbox, true, is_here, what));
     named(&response, &format!("{} key", slot.name()));
     if response.clicked() {
         slot.toggle_key();
     }
+}
+
+/// Painted, because no font of egui has the sign.
+fn diamond(ui: &Ui, rect: Rect, is_filled: bool, is_faint: bool, is_hovered: bool) {
+    let visuals = ui.visuals();
+    let color = match (is_hovered, is_faint) {
+        (true, _) => visuals.strong_text_color(),
+        (_, true) => visuals.weak_text_color(),
+        _ => visuals.warn_fg_color,
+    };
+    let (center, r) = (rect.center(), 4.5);
+    let corners = [vec2(0.0, -r), vec2(r, 0.0), vec2(0.0, r), vec2(-r, 0.0)].map(|corner| center + corner);
+    let fill = if is_filled { color } else { Color32::TRANSPARENT };
+    ui.painter().add(Shape::convex_polygon(corners.to_vec(), fill, Stroke::new(1.0, color)));
 }
 
 fn tail_width(slot: &Slot) -> f32 {
@@ -286,5 +307,6 @@ fn width_before_tail(ui: &Ui, slot: &Slot) -> f32 {
 pub fn component(ui: &mut Ui, slot: &mut Slot, part: usize, label: &str, width: f32) -> Option<String> {
     let suffix = format!(".{label}");
     let dragged = handle(ui, slot, part, label, &suffix);
-    dragged.or(number::field(ui, slot, part, &suffix, width))
+    let typed = field(ui, slot, part, &suffix, width);
+    dragged.or(typed)
 }

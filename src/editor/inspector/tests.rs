@@ -194,6 +194,11 @@ fn colors_have_a_strength() {
     assert_eq!(param(&harness, "irradiance"), json!([4, 2, 7]));
     click(&mut harness, "n.irradiance picker");
     assert!(harness.query_all_by_role(Role::ColorWell).count() > 0 || says(&harness, "n.irradiance picker"));
+    let mut black = on(json!({ "type": "environment" }));
+    type_into(&mut black, "n.radiance.strength", "0");
+    assert_eq!(param(&black, "radiance"), json!([0, 0, 0]));
+    type_into(&mut black, "n.radiance.strength", "3");
+    assert_eq!(param(&black, "radiance"), json!([3, 3, 3]));
     // A share has none: the picker's range is its own.
     let harness = on(json!({ "type": "medium" }));
     assert!(harness.query_by_label("n.albedo.strength").is_none());
@@ -227,6 +232,8 @@ fn a_direction_is_turned() {
     harness.state_mut().undo();
     assert_eq!(param(&harness, "direction"), json!([0, 0, 2]));
     type_into(&mut harness, "n.direction.z", "0");
+    // What is refused hides nothing else.
+    assert!(harness.query_by_label("n.direction.x").is_some());
     assert!(says(&harness, "direction has no length; write 3 numbers in brackets, not all zero"));
 }
 
@@ -351,14 +358,13 @@ fn a_curve_is_drawn() {
         harness.hover_at(at);
         harness.step();
         // Within one frame, because a frame of the harness is as long as a double click may take.
-        for pressed in [true, false, true, false] {
-            harness.event(Event::PointerButton {
-                pos: at,
-                button: PointerButton::Primary,
-                pressed,
-                modifiers: Modifiers::NONE,
-            });
-        }
+        let events = [true, false, true, false].map(|pressed| Event::PointerButton {
+            pos: at,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers: Modifiers::NONE,
+        });
+        harness.input_mut().events.extend(events);
         harness.run();
     };
     double(&mut harness, whole.left_top() + vec2(0.5 * whole.width(), 30.0));
