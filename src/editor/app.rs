@@ -206,7 +206,7 @@ impl App {
         }
         let width = self.settings.inspector_width;
         let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
-        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection));
+        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
         self.settings.inspector_width = shown.response.rect.width();
         let height = self.settings.canvas_height;
         let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
