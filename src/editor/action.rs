@@ -19,6 +19,10 @@ pub enum Action {
     Save,
     /// Asks for a file to write the graph to.
     SaveAs,
+    /// Goes back to what the file holds.
+    Revert,
+    /// What the file held at its last saves.
+    Versions,
     /// Closes the window.
     Quit,
     /// Takes the last step back.
@@ -115,6 +119,8 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::Open, "File", "Open a graph…", key(COMMAND, Key::O)),
     spec(Action::SaveAs, "File", "Save as…", key(COMMAND_SHIFT, Key::S)),
     spec(Action::Save, "File", "Save", key(COMMAND, Key::S)),
+    spec(Action::Revert, "File", "Revert to the file", None),
+    spec(Action::Versions, "File", "Earlier versions…", None),
     spec(Action::Quit, "File", "Quit", key(COMMAND, Key::Q)),
     spec(Action::Redo, "Edit", "Redo", key(COMMAND_SHIFT, Key::Z)),
     spec(Action::Undo, "Edit", "Undo", key(COMMAND, Key::Z)),

@@ -1,10 +1,12 @@
 //! The window: panels, and what passes between them.
 
 mod files;
+mod safety;
 mod solving;
+mod thumbnails;
 
 use std::collections::HashMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use egui::{CentralPanel, Frame, Panel, TextureHandle, Ui};
 
@@ -28,6 +30,7 @@ use crate::nodes::catalog;
 use crate::template;
 use crate::volume::Lattice;
 use files::Files;
+use safety::Safety;
 
 /// The editor.
 pub struct App {
@@ -44,6 +47,7 @@ pub struct App {
     toasts: Toasts,
     player: Player,
     files: Files,
+    safety: Safety,
     figures: Figures,
     settings: Settings,
     presets: Vec<Preset>,
@@ -61,8 +65,13 @@ pub struct App {
 }
 
 impl App {
-    /// On a graph, or on the start page.
-    pub fn new(context: &egui::Context, project: Option<Project>, adapter: &AdapterChoice) -> Self {
+    /// On a graph, or on the start page. What is not saved is kept in `state`, the program's own folder.
+    pub fn new(
+        context: &egui::Context,
+        project: Option<Project>,
+        adapter: &AdapterChoice,
+        state: Option<PathBuf>,
+    ) -> Self {
         let settings = Settings::load(Settings::file().as_deref());
         theme::apply(context, settings.theme.into());
         context.set_zoom_factor(settings.scale);
@@ -80,6 +89,7 @@ impl App {
             toasts: Toasts::default(),
             player: Player::default(),
             files: Files::default(),
+            safety: Safety::new(state),
             figures: Figures::default(),
             settings,
             presets: template::presets().map(|folder| presets::list(&folder)).unwrap_or_default(),
@@ -95,6 +105,7 @@ impl App {
         if let Some(file) = app.project.file().map(Path::to_owned) {
             app.settings.opened(&file);
         }
+        app.keep_safe();
         app
     }
 
@@ -110,6 +121,8 @@ impl App {
             Action::OpenVolume => self.files.ask_volume(self.settings.folder.as_deref()),
             Action::SaveAs => self.files.ask_save(self.settings.folder.as_deref(), &self.project),
             Action::Save => drop(self.save()),
+            Action::Revert => self.revert(),
+            Action::Versions => self.safety.toggle_versions(),
             Action::Palette => self.palette.toggle(),
             Action::Shortcuts => self.shows_shortcuts = !self.shows_shortcuts,
             Action::FitPicture => self.viewport.fit(),
@@ -206,7 +219,8 @@ impl App {
         }
         let width = self.settings.inspector_width;
         let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
-        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
+        let shown =
+            panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
         self.settings.inspector_width = shown.response.rect.width();
         let height = self.settings.canvas_height;
         let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
@@ -218,6 +232,8 @@ impl App {
         for request in shown.inner {
             match request {
                 Request::Show(name) => self.chosen = Some(name),
+                Request::Inspect(name) => self.selection.only(&name),
+                Request::SavePreset(name) => self.ask_preset(&name),
             }
         }
         let frame = Frame::central_panel(ui.style()).inner_margin(6.0);
@@ -250,7 +266,7 @@ fn camera_of(document: &Document, name: &str) -> Option<Camera> {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        self.listen();
+        self.listen(&context);
         for action in action::pressed(&context, self.is_open && self.canvas.has_keys()) {
             if self.possible().is(action) {
                 self.perform(&context, action);
@@ -281,6 +297,7 @@ impl eframe::App for App {
         }
         shortcuts::show(ui, &mut self.shows_shortcuts);
         self.files(ui);
+        self.safety(ui);
         self.toasts.show(ui);
         if self.is_open {
             self.ask(&context);

@@ -83,8 +83,9 @@ pub fn open(graph: Option<&Path>, adapter: &AdapterChoice) -> Result<(), EditorE
         ..Default::default()
     };
     let adapter = adapter.clone();
-    let create: eframe::AppCreator =
-        Box::new(move |context| Ok(Box::new(App::new(&context.egui_ctx, project, &adapter))));
+    let create: eframe::AppCreator = Box::new(move |context| {
+        Ok(Box::new(App::new(&context.egui_ctx, project, &adapter, project::state_folder())))
+    });
     eframe::run_native("tyndall", options, create)
         .map_err(|error| EditorError::Window(format!("the window cannot be opened: {error}")))
 }

@@ -8,6 +8,7 @@ use egui_file_dialog::{DialogState, FileDialog, Filter};
 use super::App;
 use crate::editor::panels::unsaved::{self, Answer};
 use crate::editor::{Project, Selection, Statuses};
+use crate::graph::Document;
 use crate::template;
 
 /// What a dialog is for.
@@ -16,6 +17,8 @@ enum Purpose {
     Graph,
     Volume,
     Save,
+    /// A group is written to a file of its own.
+    Preset,
 }
 
 /// What comes after the question whether to save.
@@ -37,6 +40,8 @@ pub struct Files {
     dialog: Option<(FileDialog, Purpose)>,
     /// What waits for the answer whether to save.
     waiting: Option<Goal>,
+    /// The group that is to be written as a preset.
+    group: Option<Document>,
     /// Saving was asked for on the way to this goal.
     after_save: Option<Goal>,
     may_close: bool,
@@ -71,6 +76,15 @@ impl Files {
             .default_file_filter("OpenVDB");
         dialog.pick_file();
         self.dialog = Some((dialog, Purpose::Volume));
+    }
+
+    /// Asks where to write a group as a preset.
+    fn ask_preset(&mut self, folder: Option<&Path>, name: &str, group: Document) {
+        let name = name.rsplit('/').next().unwrap_or(name);
+        let mut dialog =
+            dialog("Save the group as a preset", folder).default_file_name(&format!("{name}.json"));
+        dialog.save_file();
+        (self.dialog, self.group) = (Some((dialog, Purpose::Preset)), Some(group));
     }
 
     /// Asks where to save.
@@ -108,6 +122,7 @@ impl App {
     }
 
     fn go(&mut self, goal: Goal) {
+        self.give_up();
         match goal {
             Goal::Start => self.is_open = false,
             Goal::Quit => self.files.may_close = true,
@@ -163,14 +178,16 @@ impl App {
     }
 
     /// Another graph: nothing of the one before is left.
-    fn show(&mut self, project: Project) {
+    pub(super) fn show(&mut self, project: Project) {
         self.project = project;
+        self.keep_safe();
         self.is_open = true;
         self.selection = Selection::default();
         self.statuses = Statuses::default();
         self.canvas = Default::default();
         self.viewport.fit();
         self.pictures.clear();
+        self.thumbnails.clear();
         (self.chosen, self.look, self.lattice, self.asked, self.spanned) = (None, None, None, None, None);
         self.player = Default::default();
     }
@@ -231,6 +248,29 @@ impl App {
         }
     }
 
+    /// Asks where to write a group, `outer/inner`, as a preset of its own.
+    pub(super) fn ask_preset(&mut self, path: &str) {
+        let (outer, name) = path.rsplit_once('/').map_or((None, path), |(outer, name)| (Some(outer), name));
+        let document = self.project.document();
+        let holder = match outer {
+            Some(outer) => document.node(outer).and_then(|node| node.inside.as_deref()),
+            None => Some(document),
+        };
+        match holder.map(|holder| holder.preset_of(name)) {
+            Some(Ok(group)) => self.files.ask_preset(self.settings.folder.as_deref(), name, group),
+            Some(Err(error)) => self.toasts.complain(error),
+            None => self.toasts.complain(format!("the group '{path}' is no more")),
+        }
+    }
+
+    fn save_preset(&mut self, path: &Path) {
+        let Some(group) = self.files.group.take() else { return };
+        match Project::new(group).save_as(path) {
+            Ok(()) => self.toasts.say(format!("Saved {}", path.display())),
+            Err(error) => self.toasts.complain(error),
+        }
+    }
+
     fn dialogs(&mut self, ui: &Ui) {
         let Some((dialog, purpose)) = &mut self.files.dialog else { return };
         dialog.update(ui.ctx());
@@ -244,6 +284,7 @@ impl App {
                         self.go(goal);
                     }
                 }
+                Purpose::Preset => self.save_preset(&path),
                 Purpose::Graph | Purpose::Volume => self.open(&path),
             }
         } else if !matches!(dialog.state(), DialogState::Open) {

@@ -2,12 +2,13 @@
 
 use glam::DVec3;
 
-use super::App;
+use super::{App, thumbnails};
 use crate::editor::NodeState;
 use crate::editor::look::{self, Look};
 use crate::editor::viewport::Picture;
 use crate::editor::worker::{Ask, Reply, Solved};
 use crate::graph::{Document, Event, PortType, flatten};
+use crate::image::Image;
 use crate::nodes::catalog;
 use crate::volume::Lattice;
 use crate::wire::Medium;
@@ -57,6 +58,7 @@ impl App {
         }
         self.statuses.retain(|name, _| document.nodes.contains_key(name));
         self.pictures.retain(|name, _| document.nodes.contains_key(name));
+        self.thumbnails.retain(|name, _| document.nodes.contains_key(name));
         let look = self.look.clone();
         let looked_at = look.iter().map(|look| look.source.node.clone()).collect();
         let mut rest = look::harmless(&document);
@@ -69,7 +71,7 @@ impl App {
         self.asked = Some(Asked { revision, frame, is_drag, look, number, document });
     }
 
-    pub(super) fn listen(&mut self) {
+    pub(super) fn listen(&mut self, context: &egui::Context) {
         for (number, reply) in self.worker.replies() {
             let is_last = self.asked.as_ref().is_none_or(|asked| asked.number == number);
             match reply {
@@ -78,7 +80,7 @@ impl App {
                     self.figures.trouble = None;
                 }
                 Reply::Event { event, is_full } => self.note(event, is_full && is_last),
-                Reply::Solved(solved) => self.take(solved, is_last),
+                Reply::Solved(solved) => self.take(context, solved, is_last),
                 Reply::Rested => self.figures.running = None,
                 Reply::Trouble { message, retries } => {
                     self.figures.running = None;
@@ -90,7 +92,7 @@ impl App {
         self.figures.n_failed = failed.count();
     }
 
-    fn take(&mut self, solved: Solved, is_last: bool) {
+    fn take(&mut self, context: &egui::Context, solved: Solved, is_last: bool) {
         let Solved { level, values, costs, wall_ms, cache_bytes, gpu_bytes } = solved;
         (self.figures.cache_bytes, self.figures.gpu_bytes) = (cache_bytes, gpu_bytes);
         let source = self.look.as_ref().map(|look| look.source.clone());
@@ -115,6 +117,9 @@ impl App {
                     {
                         self.player.known.insert(frame);
                     }
+                }
+                if let Some(small) = thumbnails::texture(context, &name, value.get::<Image>()) {
+                    self.thumbnails.insert(name.clone(), small);
                 }
                 self.pictures.insert(name, Picture { value, level });
             } else if value.kind == PortType::Medium && level.is_full() {

@@ -46,6 +46,9 @@ impl Possible {
             Action::Play | Action::NextFrame | Action::PreviousFrame => self.frames,
             Action::Save
             | Action::SaveAs
+            | Action::Revert
+            | Action::Versions
+            | Action::Canvas(_)
             | Action::FitPicture
             | Action::ActualSize
             | Action::FrameMedium

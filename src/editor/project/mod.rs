@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 
 use crate::graph::Document;
 
-pub use autosave::{Autosave, Recoverable, recoverable};
+pub use autosave::{Autosave, EVERY, Recoverable, recoverable};
 
 /// Where recovery and versions of this user's graphs are kept; `None` where the system names no such folder.
 pub fn state_folder() -> Option<PathBuf> {

@@ -9,7 +9,7 @@
 //! window. Gestures are tested by `egui_kittest`.
 
 mod bar;
-mod display;
+pub mod display;
 mod eye;
 mod hand;
 mod overlay;

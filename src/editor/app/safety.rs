@@ -1,0 +1,177 @@
+//! Work is never lost: what is not saved is written down, found again after a kill, and offered; what was saved
+//! before can be had back.
+
+use std::path::PathBuf;
+use std::time::{Instant, SystemTime};
+
+use egui::{Ui, Window};
+
+use super::App;
+use crate::editor::project::{Autosave, Recoverable, recoverable, versions};
+
+/// What was not saved, and what was saved before.
+pub struct Safety {
+    /// The program's own folder; without one nothing is kept.
+    state: Option<PathBuf>,
+    autosave: Option<Autosave>,
+    /// What another program left when it ended without saving.
+    found: Vec<Recoverable>,
+    shows_versions: bool,
+}
+
+impl Safety {
+    /// In the program's own folder.
+    pub fn new(state: Option<PathBuf>) -> Self {
+        let found = state.as_deref().map(recoverable).unwrap_or_default();
+        Self { autosave: state.as_deref().map(Autosave::new), found, state, shows_versions: false }
+    }
+
+    /// Shows the earlier versions, or hides them.
+    pub fn toggle_versions(&mut self) {
+        self.shows_versions = !self.shows_versions;
+    }
+}
+
+impl App {
+    /// Writes down what is not saved, and asks what to do with what was not.
+    pub(super) fn safety(&mut self, ui: &Ui) {
+        if let Some(autosave) = self.safety.autosave.as_mut().filter(|_| self.is_open) {
+            if let Some(wrong) = autosave.tick(&self.project, Instant::now()) {
+                self.toasts.complain(wrong);
+            }
+            if self.project.is_unsaved() {
+                // A last change is written down though nothing else happens.
+                ui.ctx().request_repaint_after(crate::editor::project::EVERY);
+            }
+        }
+        if let Some(warning) = self.project.take_warning() {
+            self.toasts.complain(warning);
+        }
+        self.offer(ui);
+        self.versions(ui);
+    }
+
+    /// From now on this graph's versions are kept, and what it was opened without is told.
+    pub(super) fn keep_safe(&mut self) {
+        if let Some(state) = &self.safety.state {
+            self.project.keep_versions(state);
+        }
+        if !self.project.left_out().is_empty() {
+            let lines = self.project.left_out().join("; ");
+            self.toasts.complain(format!("Not understood, and left out when you save: {lines}"));
+        }
+        self.safety.shows_versions = false;
+    }
+
+    /// The graph is given up or saved: nothing of it is to be found again.
+    pub(super) fn give_up(&mut self) {
+        if let Some(autosave) = &mut self.safety.autosave {
+            autosave.forget();
+        }
+    }
+
+    /// Goes back to the file, as a step of undo.
+    pub(super) fn revert(&mut self) {
+        match self.project.revert() {
+            Ok(true) => self.toasts.say("Back to the file; Undo takes it back".to_owned()),
+            Ok(false) => self.toasts.complain("This graph has no file yet".to_owned()),
+            Err(error) => self.toasts.complain(error),
+        }
+    }
+
+    fn offer(&mut self, ui: &Ui) {
+        let Some(found) = self.safety.found.first().filter(|_| !self.is_open) else { return };
+        let name = found
+            .file
+            .as_ref()
+            .map_or("a graph without a file".to_owned(), |file| file.display().to_string());
+        let text = format!("Tyndall ended {} with changes in {name} that were not saved.", ago(found.time));
+        let mut answer = None;
+        Window::new("Recover")
+            .collapsible(false)
+            .resizable(false)
+            .anchor(egui::Align2::CENTER_TOP, [0.0, 48.0])
+            .show(ui.ctx(), |ui| {
+                ui.label(text);
+                ui.add_space(8.0);
+                ui.horizontal(|ui| {
+                    for (label, value) in [("Recover it", true), ("Discard it", false)] {
+                        if ui.button(label).clicked() {
+                            answer = Some(value);
+                        }
+                    }
+                });
+            });
+        match (answer, &mut self.safety.autosave) {
+            (Some(true), Some(autosave)) => {
+                let project = autosave.recover(self.safety.found.remove(0));
+                self.show(project);
+            }
+            (Some(_), _) => self.safety.found.remove(0).discard(),
+            (None, _) => {}
+        }
+    }
+
+    fn versions(&mut self, ui: &Ui) {
+        let (Some(state), Some(file)) = (&self.safety.state, self.project.file()) else {
+            if std::mem::take(&mut self.safety.shows_versions) {
+                self.toasts.say("There are versions once the graph is saved".to_owned());
+            }
+            return;
+        };
+        if !self.safety.shows_versions || !self.is_open {
+            return;
+        }
+        let listed = versions::list(state, file);
+        let mut chosen = None;
+        let mut is_open = true;
+        Window::new("Earlier versions").open(&mut is_open).resizable(false).show(ui.ctx(), |ui| {
+            if listed.is_empty() {
+                ui.weak("None yet: one is kept at each save.");
+            }
+            for version in &listed {
+                ui.horizontal(|ui| {
+                    ui.label(format!("{}. saved {}", version.number, ago(version.time)));
+                    if ui.button(format!("Restore version {}", version.number)).clicked() {
+                        chosen = Some(version.clone());
+                    }
+                });
+            }
+        });
+        self.safety.shows_versions = is_open;
+        if let Some(version) = chosen {
+            match self.project.restore(&version) {
+                Ok(()) => self.toasts.say(format!("Back to version {}; Undo takes it back", version.number)),
+                Err(error) => self.toasts.complain(error),
+            }
+        }
+    }
+}
+
+/// "3 minutes ago".
+fn ago(time: SystemTime) -> String {
+    let secs = SystemTime::now().duration_since(time).map_or(0, |passed| passed.as_secs());
+    let (count, unit) = match secs {
+        0..60 => return "just now".to_owned(),
+        60..3600 => (secs / 60, "minute"),
+        3600..86_400 => (secs / 3600, "hour"),
+        _ => (secs / 86_400, "day"),
+    };
+    format!("{count} {unit}{} ago", if count == 1 { "" } else { "s" })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::*;
+
+    #[test]
+    fn times_as_people_say_them() {
+        let before = |secs| ago(SystemTime::now() - Duration::from_secs(secs));
+        assert_eq!(before(5), "just now");
+        assert_eq!(before(61), "1 minute ago");
+        assert_eq!(before(7300), "2 hours ago");
+        assert_eq!(before(200_000), "2 days ago");
+    }
+}
