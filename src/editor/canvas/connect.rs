@@ -86,7 +86,7 @@ impl Canvas {
             },
             (None, None) => {
                 match drawing.unplugged {
-                    Some(wire) => desk.edit("Unplug", |document| drop(document.disconnect(&wire))),
+                    Some(wire) => super::command::unplug(desk, &wire),
                     None => self.open_search(Purpose::Connect(drawing.fixed)),
                 }
                 return;
