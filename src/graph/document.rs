@@ -66,7 +66,8 @@ pub struct Document {
     pub inputs: IndexMap<String, Vec<End>>,
     /// As a group: what its outputs stand for.
     pub outputs: IndexMap<String, End>,
-    /// The folder at which relative paths start; empty for the working directory. Not part of the file.
+    /// The folder at which relative paths start; empty for the working directory. That of a group is its
+    /// graph's. Not part of the file.
     pub base: PathBuf,
     /// The frame that is looked at; without one sequences and keys are at their first. Not part of the file.
     pub frame: Option<i64>,
@@ -233,6 +234,13 @@ impl Document {
             "" => Some(self),
             path => self.node_mut(path)?.inside.as_deref_mut(),
         }
+    }
+
+    /// Says at which folder relative paths start, in groups too.
+    pub(super) fn set_base(&mut self, base: &Path) {
+        self.base = base.to_owned();
+        let insides = self.nodes.values_mut().filter_map(|node| node.inside.as_mut());
+        insides.for_each(|inside| inside.set_base(base));
     }
 
     /// Whether some node can be another in another frame.

@@ -187,10 +187,20 @@ fn what_was_not_saved_is_found_after_a_kill() {
         second.tick(&other, start);
         second.finish();
     }
-    let mut found = recoverable(&state);
+    let found = recoverable(&state);
     let mut abouts: Vec<&str> = found.iter().map(|found| found.document.about.as_str()).collect();
     abouts.sort();
     assert_eq!(abouts, ["a", "second"]);
+    drop(found);
+    // Another start writes over nothing of them.
+    let mut third = Autosave::new(&state);
+    let mut other = Project::new(Document::default());
+    other.edit("say", say("third"));
+    third.tick(&other, start);
+    third.finish();
+    let mut found = recoverable(&state);
+    assert_eq!(found.len(), 2);
+    third.forget();
     let second = found.iter().position(|found| found.file.is_none()).unwrap();
     found.remove(second).discard();
     let found = found.remove(0);

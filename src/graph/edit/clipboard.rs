@@ -16,7 +16,9 @@ impl Document {
     /// folder at which its relative paths start.
     pub fn copy(&self, names: &[String]) -> String {
         let mut fields = self.part(names).to_fields();
-        if let Some(base) = std::path::absolute(&self.base).ok().as_deref().and_then(Path::to_str) {
+        // The empty path is the working directory, which `absolute` refuses.
+        let base = if self.base.as_os_str().is_empty() { Path::new(".") } else { &self.base };
+        if let Some(base) = std::path::absolute(base).ok().as_deref().and_then(Path::to_str) {
             fields.insert(BASE.to_owned(), base.into());
         }
         Json::Object(fields).to_string()
@@ -46,7 +48,7 @@ impl Document {
     pub fn insert_preset(&mut self, catalog: Catalog, preset: &Document, like: &str, at: [f64; 2]) -> String {
         let mut inside = preset.clone();
         inside.rebase(catalog, &self.base);
-        (inside.base, inside.frame) = Default::default();
+        inside.frame = None;
         self.add_node(like, Node::group(inside), at)
     }
 
@@ -158,6 +160,17 @@ mod tests {
         let mut other = Document { base: "/graphs".into(), ..Document::default() };
         other.paste_text(CATALOG, &text, [0.0; 2]).unwrap();
         assert_eq!(other.nodes["file"].params["path"], "data/a.vdb");
+        // Out of a group and into one, too.
+        let mut grouped = document();
+        grouped.make_group(&strings(&["file"]), "g").unwrap();
+        assert_eq!(grouped.inside("g").unwrap().copy(&strings(&["file"])), text);
+        other.make_group(&strings(&["file"]), "g").unwrap();
+        let inside = other.inside_mut("g").unwrap();
+        inside.paste_text(CATALOG, &text, [0.0; 2]).unwrap();
+        assert_eq!(inside.nodes["file_2"].params["path"], "data/a.vdb");
+        let preset = grouped.preset_of("g").unwrap();
+        other.insert_preset(CATALOG, &preset, "p", [0.0; 2]);
+        assert_eq!(other.node("p/file").unwrap().params["path"], "data/a.vdb");
         let mut same = document();
         same.paste_text(CATALOG, &text, [0.0; 2]).unwrap();
         assert_eq!(same.nodes["file_2"].params["path"], "../data/a.vdb");
@@ -168,6 +181,8 @@ mod tests {
         let mut document = document();
         assert_eq!(document.duplicate(&strings(&["sum"]), [1.0, 1.0]).unwrap(), ["sum_3"]);
         assert_eq!(wires(&document)[3..], ["one.light -> sum_3.lights"]);
+        document.duplicate(&strings(&["sum", "sum_2"]), [1.0, 1.0]).unwrap();
+        assert_eq!(wires(&document)[4..], ["sum_4.light -> sum_5.lights", "one.light -> sum_4.lights"]);
         assert!(document.duplicate(&strings(&["nobody"]), [0.0; 2]).is_err());
     }
 }

@@ -28,7 +28,7 @@ impl Document {
         let is_in = |end: &End| names.contains(&end.node);
         let idx = self.nodes.get_index_of(&names[0]).expect("asked above");
         let first = names.iter().filter_map(|name| self.nodes.get_index_of(name)).min().unwrap_or(idx);
-        let mut inside = Document { base: Default::default(), ..self.part(names) };
+        let mut inside = self.part(names);
         let mut rest = self.clone();
         rest.nodes.retain(|name, _| !names.contains(name));
         let group = rest.free_name(like);
@@ -154,7 +154,7 @@ impl Document {
         let Some(inside) = node.inside.as_deref() else {
             return Err(format!("'{name}' is no group; group it first"));
         };
-        Ok(Document { base: self.base.clone(), ..inside.clone() })
+        Ok(inside.clone())
     }
 }
 

@@ -12,10 +12,11 @@ impl Document {
     /// same files from there, relative where that is possible; with an empty `base` they become absolute.
     /// Absolute paths stay. Paths of what is written stay too: a picture belongs beside its graph.
     pub fn rebase(&mut self, catalog: Catalog, base: &Path) {
-        let old = std::mem::replace(&mut self.base, base.to_owned());
+        let old = self.base.clone();
         if old != base {
             move_paths(self, catalog, &old, base);
         }
+        self.set_base(base);
     }
 }
 
@@ -94,7 +95,7 @@ mod tests {
         );
         let mut document = Document::parse(&text, Path::new(old)).unwrap();
         document.rebase(CATALOG, Path::new(new));
-        assert_eq!(document.base, Path::new(new));
+        assert_eq!(document.inside("g").unwrap().base, Path::new(new));
         assert_eq!(document.node("g/save").unwrap().params["path"], "out.png");
         document.node("g/f").unwrap().params["path"].as_str().unwrap().to_owned()
     }

@@ -210,16 +210,6 @@ fn parameters_in_groups() {
     assert_eq!(error("look.mute"), "cannot set 'look.mute': mute is 1; write true or false");
 }
 
-#[test]
-fn no_kind_has_a_reserved_name() {
-    use crate::graph::{GROUP, RESERVED};
-    let catalog = crate::nodes::catalog();
-    assert!(catalog.find(GROUP).is_none());
-    for kind in catalog.0 {
-        assert!(kind.params.iter().all(|param| !RESERVED.contains(&param.name)), "{}", kind.id);
-    }
-}
-
 /// Longer than any stack of calls would bear.
 #[test]
 fn a_long_chain_of_bypassed_nodes_is_no_recursion() {

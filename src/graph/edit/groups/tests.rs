@@ -103,6 +103,7 @@ fn ports_places_and_bends_of_a_group() {
     document.ungroup("a_2").unwrap();
     assert_eq!(document.nodes.keys().collect::<Vec<_>>(), ["a", "b", "s", "t", "pair", "paint"]);
     assert_eq!((document.layout["s"], document.layout["t"]), ([200.0, 0.0], [300.0, 50.0]));
+    assert_eq!(document.bends.keys().map(Wire::to_string).collect::<Vec<_>>(), ["a.light -> t.lights"]);
 }
 
 #[test]

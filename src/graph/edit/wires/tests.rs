@@ -23,6 +23,9 @@ fn wires(document: &Document) -> Vec<String> {
 #[test]
 fn an_input_that_takes_one_loses_the_one_that_it_had() {
     let mut document = document();
+    let mut without = document.clone();
+    without.disconnect(&wire("t.light -> paint.light"));
+    assert!(without.bends.is_empty());
     document.connect(CATALOG, wire("b.light -> paint.light")).unwrap();
     assert_eq!(wires(&document), ["a.light -> s.lights", "s.light -> t.lights", "b.light -> paint.light"]);
     assert!(document.bends.is_empty());
