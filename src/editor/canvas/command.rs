@@ -224,7 +224,7 @@ impl Canvas {
     }
 
     fn paste(&mut self, ui: &egui::Ui, text: &str, desk: &mut Desk) {
-        let at = self.view.from_screen(self.pointer);
+        let at = self.view.to_canvas(self.pointer);
         let pasted = self.insert("Paste", desk, |document| {
             // Into nothing first, to learn where the nodes would stand.
             let mut alone = Document { base: document.base.clone(), ..Document::default() };

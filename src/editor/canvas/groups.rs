@@ -14,7 +14,7 @@ impl Canvas {
 
     /// The selected group, where the pointer is on it: there, the key that adds a node enters it.
     pub(super) fn pointed_group(&self, desk: &Desk) -> Option<String> {
-        let node = self.scene.node_at(self.view.from_screen(self.pointer))?;
+        let node = self.scene.node_at(self.view.to_canvas(self.pointer))?;
         (node.is_group && desk.selection.active() == Some(&node.name)).then(|| node.name.clone())
     }
 

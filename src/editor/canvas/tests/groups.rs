@@ -98,7 +98,7 @@ fn a_wire_is_bent_and_straightened() {
     drag(&mut harness, from, from + vec2(0.0, -60.0));
     let zoom = f64::from(harness.state().canvas.view.zoom);
     let place = document(&harness).bends[&wire][0];
-    let expected = harness.state().canvas.view.from_screen(from + vec2(0.0, -60.0));
+    let expected = harness.state().canvas.view.to_canvas(from + vec2(0.0, -60.0));
     // Whole points.
     assert!((place[1] - f64::from(expected.y)).abs() <= 1.0 / zoom + 0.5, "{place:?} {expected:?}");
     harness.hover_at(EMPTY);
