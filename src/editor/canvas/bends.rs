@@ -21,7 +21,7 @@ impl WireShape {
 impl Canvas {
     /// Leads a wire through the place of the pointer.
     pub(super) fn add_bend(&mut self, wire: &Wire, desk: &mut Desk) {
-        let at = self.view.from_screen(self.pointer).round();
+        let at = self.view.to_canvas(self.pointer).round();
         let Some(shape) = self.scene.wires.iter().find(|shape| shape.wire == *wire) else { return };
         let idx = shape.nearest_part(at);
         desk.edit("Bend a wire", |document| {

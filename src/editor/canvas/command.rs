@@ -6,8 +6,8 @@ use super::desk::Desk;
 use super::gesture::Gesture;
 use super::search::Purpose;
 use super::{Canvas, Chosen, Request};
-use crate::graph::Document;
 use crate::graph::layout::layered;
+use crate::graph::{Document, Wire};
 use crate::nodes::catalog;
 
 /// What can be asked for.
@@ -64,7 +64,10 @@ impl Canvas {
         let context = ui.ctx();
         let size = self.screen.map_or(Vec2::ZERO, |screen| screen.size());
         match command {
-            Command::AddNode => self.open_search(Purpose::Add),
+            Command::AddNode => match self.pointed_group(desk) {
+                Some(name) => self.go_to(super::desk::path(&self.group, &name)),
+                None => self.open_search(Purpose::Add),
+            },
             Command::AddFrame => self.add_frame(desk),
             Command::Mute
             | Command::Bypass
@@ -186,7 +189,7 @@ impl Canvas {
     fn delete(&mut self, label: &str, desk: &mut Desk) {
         match self.chosen.take() {
             Some(Chosen::Wire(wire)) => {
-                return desk.edit("Unplug", |document| drop(document.disconnect(&wire)));
+                return unplug(desk, &wire);
             }
             Some(Chosen::Bend(wire, idx)) => return Self::remove_bend(desk, &wire, idx),
             Some(Chosen::Frame(idx)) => return Self::remove_frame(desk, idx),
@@ -221,7 +224,7 @@ impl Canvas {
     }
 
     fn paste(&mut self, ui: &egui::Ui, text: &str, desk: &mut Desk) {
-        let at = self.view.from_screen(self.pointer);
+        let at = self.view.to_canvas(self.pointer);
         let pasted = self.insert("Paste", desk, |document| {
             // Into nothing first, to learn where the nodes would stand.
             let mut alone = Document { base: document.base.clone(), ..Document::default() };
@@ -233,6 +236,13 @@ impl Canvas {
             self.tell(ui, format!("the clipboard holds no nodes: {first}"));
         }
     }
+}
+
+/// Removes a wire.
+pub(super) fn unplug(desk: &mut Desk, wire: &Wire) {
+    desk.edit("Unplug", |document| {
+        document.disconnect(wire);
+    });
 }
 
 fn copy(context: &Context, desk: &Desk) {

@@ -56,7 +56,7 @@ impl Canvas {
         if !drawing.fits(fixed, port) {
             return PortLook::Dim;
         }
-        let is_near = port.at.distance(self.view.from_screen(self.pointer)) * self.view.zoom <= REACH;
+        let is_near = port.at.distance(self.view.to_canvas(self.pointer)) * self.view.zoom <= REACH;
         if is_near { PortLook::Hot } else { PortLook::Plain }
     }
 
@@ -70,7 +70,7 @@ impl Canvas {
     /// Ends a wire where the pointer is.
     pub(super) fn drop_wire(&mut self, ui: &egui::Ui, drawing: Drawing, desk: &mut Desk) {
         let scene = self.scene.clone();
-        let at = self.view.from_screen(self.pointer);
+        let at = self.view.to_canvas(self.pointer);
         let port = scene.port_at(at, REACH / self.view.zoom).map(|port| &port.port);
         let port = match (port, scene.node_at(at)) {
             (Some(port), _) => port,
@@ -86,7 +86,7 @@ impl Canvas {
             },
             (None, None) => {
                 match drawing.unplugged {
-                    Some(wire) => desk.edit("Unplug", |document| drop(document.disconnect(&wire))),
+                    Some(wire) => super::command::unplug(desk, &wire),
                     None => self.open_search(Purpose::Connect(drawing.fixed)),
                 }
                 return;
@@ -125,7 +125,7 @@ impl Canvas {
             }
             Gesture::Connect(drawing) => {
                 let Some(fixed) = self.scene.port(&drawing.fixed) else { return };
-                let at = self.view.from_screen(self.pointer);
+                let at = self.view.to_canvas(self.pointer);
                 let target = self.scene.port_at(at, REACH / self.view.zoom);
                 let target = target.filter(|port| port.port != drawing.fixed);
                 let fits = target.filter(|port| drawing.fits(fixed, port));

@@ -58,13 +58,21 @@ impl<'a> Desk<'a> {
     /// One step of undo.
     pub fn edit(&mut self, label: &str, change: impl FnOnce(&mut Document)) {
         let group = &self.group;
-        self.project.edit(label, |document| drop(document.inside_mut(group).map(change)));
+        self.project.edit(label, |document| {
+            if let Some(inside) = document.inside_mut(group) {
+                change(inside);
+            }
+        });
     }
 
     /// Part of a gesture.
     pub fn edit_during(&mut self, gesture: Id, label: &str, change: impl FnOnce(&mut Document)) {
         let group = &self.group;
-        self.project.edit_during(gesture, label, |document| drop(document.inside_mut(group).map(change)));
+        self.project.edit_during(gesture, label, |document| {
+            if let Some(inside) = document.inside_mut(group) {
+                change(inside);
+            }
+        });
     }
 
     pub fn thumbnail(&self, name: &str) -> Option<&TextureHandle> {

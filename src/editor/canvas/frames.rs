@@ -27,7 +27,7 @@ impl Canvas {
         let around = self.scene.bounds(&desk.selection.nodes);
         let around = match around.is_positive() {
             true => around.expand(MARGIN),
-            false => Rect::from_min_size(self.view.from_screen(self.pointer), vec2(320.0, 200.0)),
+            false => Rect::from_min_size(self.view.to_canvas(self.pointer), vec2(320.0, 200.0)),
         };
         let around = Rect::from_min_max(around.min - vec2(0.0, TITLE), around.max);
         let whole = |pair: Vec2| [pair.x.round(), pair.y.round()].map(f64::from);
@@ -99,7 +99,7 @@ impl Canvas {
                 brush.painter.line_segment([a, b], stroke);
             }
             let press = ui.input(|input| input.pointer.press_origin()).unwrap_or(self.pointer);
-            let from = self.view.from_screen(press);
+            let from = self.view.to_canvas(press);
             if self.was_busy {
                 continue;
             }

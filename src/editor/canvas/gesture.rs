@@ -148,7 +148,7 @@ impl Canvas {
     pub(super) fn go_on(&mut self, ui: &egui::Ui, desk: &mut Desk) {
         let (is_down, pressed) =
             ui.input(|input| (input.pointer.any_down(), input.pointer.primary_pressed()));
-        let at = self.view.from_screen(self.pointer);
+        let at = self.view.to_canvas(self.pointer);
         let is_released = !is_down;
         match std::mem::take(&mut self.gesture) {
             Gesture::None => {}

@@ -12,6 +12,12 @@ impl Canvas {
         self.next_group = Some(group);
     }
 
+    /// The selected group, where the pointer is on it: there, the key that adds a node enters it.
+    pub(super) fn pointed_group(&self, desk: &Desk) -> Option<String> {
+        let node = self.scene.node_at(self.view.to_canvas(self.pointer))?;
+        (node.is_group && desk.selection.active() == Some(&node.name)).then(|| node.name.clone())
+    }
+
     /// Goes where it was told to; out of a group that is no more.
     pub(super) fn enter(&mut self, document: &Document) {
         let mut group = self.next_group.take().unwrap_or_else(|| self.group.clone());

@@ -20,7 +20,7 @@ impl Canvas {
 
     /// The wire under the pointer, where no node is over it.
     pub(super) fn hovered_wire(&self) -> Option<Wire> {
-        let at = self.view.from_screen(self.pointer);
+        let at = self.view.to_canvas(self.pointer);
         if self.scene.node_at(at).is_some() {
             return None;
         }
@@ -37,7 +37,7 @@ impl Canvas {
             } else {
                 let adds = ui.input(|input| input.modifiers.shift || input.modifiers.command);
                 let kept = if adds { desk.selection.nodes.clone() } else { Default::default() };
-                Gesture::Box { from: brush.view.from_screen(start), kept }
+                Gesture::Box { from: brush.view.to_canvas(start), kept }
             };
         }
         if back.clicked() || back.secondary_clicked() {
@@ -121,7 +121,7 @@ impl Canvas {
     /// Draws the nodes that are on the screen.
     pub(super) fn nodes(&mut self, ui: &egui::Ui, brush: &Brush, desk: &mut Desk) {
         let scene = self.scene.clone();
-        let seen = brush.view.rect_from_screen(brush.painter.clip_rect()).expand(16.0);
+        let seen = brush.view.rect_to_canvas(brush.painter.clip_rect()).expand(16.0);
         let focused = ui.memory(|memory| memory.focused());
         // What has the keyboard stays a widget wherever it is.
         let is_shown =
@@ -157,7 +157,8 @@ impl Canvas {
             ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
         }
         for (port, look) in shape.ports.iter().zip(looks) {
-            brush.port(port, look);
+            let is_faint = shape.mute && look == node::PortLook::Plain;
+            brush.port(port, if is_faint { node::PortLook::Dim } else { look });
             if brush.view.zoom >= NEAR_PORTS {
                 self.port(ui, brush, port, desk);
             }
@@ -197,7 +198,7 @@ impl Canvas {
             desk.selection.only(&shape.name);
         }
         if response.double_clicked() {
-            let at = self.view.from_screen(self.pointer);
+            let at = self.view.to_canvas(self.pointer);
             if at.y < shape.rect.top() + HEADER {
                 self.open_name_field(&shape.name);
             } else if shape.is_group {
@@ -229,7 +230,7 @@ impl Canvas {
         let start = |name: &String| Some((name.clone(), self.scene.node(name)?.rect.min.to_vec2()));
         let starts = names.filter_map(start).collect();
         let press: Pos2 = ui.input(|input| input.pointer.press_origin()).unwrap_or(self.pointer);
-        self.gesture = Gesture::Move { starts, frame: None, from: self.view.from_screen(press) };
+        self.gesture = Gesture::Move { starts, frame: None, from: self.view.to_canvas(press) };
     }
 
     fn port(&mut self, ui: &egui::Ui, brush: &Brush, shape: &PortShape, desk: &mut Desk) {

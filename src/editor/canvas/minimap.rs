@@ -25,7 +25,7 @@ impl Canvas {
             return;
         }
         let rect = Rect::from_min_size(screen.right_bottom() - SIZE - Vec2::splat(10.0), SIZE);
-        let seen = brush.view.rect_from_screen(screen);
+        let seen = brush.view.rect_to_canvas(screen);
         let map = view(&self.scene, seen, rect);
         let theme = brush.theme;
         brush.painter.rect(
@@ -56,7 +56,7 @@ impl Canvas {
         response.widget_info(|| WidgetInfo::labeled(WidgetType::Other, true, "minimap"));
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.clicked() || response.dragged())
         {
-            self.center_on(map.from_screen(at));
+            self.center_on(map.to_canvas(at));
         }
     }
 

@@ -89,12 +89,14 @@ impl Brush<'_> {
             );
             return;
         }
-        let size = (13.0 * zoom).max((9.0_f32).min(head.height() - 2.0));
+        // From afar there is no room for a second line, and the name has the header to itself.
+        let has_type = node.type_id != node.name && zoom > NEAR_TYPES;
+        let line = if has_type { super::scene::HEADER * zoom } else { head.height() };
+        let size = (13.0 * zoom).max((11.0_f32).min(line - 4.0));
         let width = state.left() - head.left() - 1.5 * inset;
-        let line = super::scene::HEADER * zoom;
         let middle = pos2(head.left() + inset, head.top() + line / 2.0);
         self.text(middle, Align2::LEFT_CENTER, &node.name, size, white, width);
-        if node.type_id != node.name {
+        if has_type {
             let at = pos2(head.left() + inset, head.bottom() - 5.0 * zoom);
             let faint = Color32::from_white_alpha(200).gamma_multiply(opacity);
             self.text(at, Align2::LEFT_BOTTOM, &node.type_id, 10.5 * zoom, faint, head.width() - 2.0 * inset);
@@ -117,7 +119,7 @@ impl Brush<'_> {
             self.through(node);
         }
         let n_left_out = left_out(status).count();
-        if n_left_out > 0 {
+        if n_left_out > 0 && zoom > NEAR_TYPES {
             let badge = self.badge_rect(node);
             self.painter.rect_filled(
                 badge,
@@ -247,10 +249,11 @@ impl Brush<'_> {
     }
 }
 
-/// Zooms from which names, ports and their labels are drawn.
+/// Zooms from which names, ports, their labels, and types and badges are drawn.
 const NEAR_NAMES: f32 = 0.34;
 pub const NEAR_PORTS: f32 = 0.22;
 const NEAR_LABELS: f32 = 0.42;
+const NEAR_TYPES: f32 = 0.57;
 
 /// "12 ms · 3.4 MiB"; nothing of what never ran.
 pub fn cost(status: &NodeStatus) -> String {

@@ -327,3 +327,6 @@ pub fn distance(line: &[Pos2], point: Pos2) -> f32 {
     };
     line.windows(2).map(to_segment).fold(f32::INFINITY, f32::min)
 }
+
+#[cfg(test)]
+mod tests;

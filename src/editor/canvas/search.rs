@@ -127,7 +127,7 @@ impl Canvas {
     pub(super) fn open_search(&mut self, purpose: Purpose) {
         let screen = self.screen.unwrap_or(egui::Rect::NOTHING);
         let at = if screen.contains(self.pointer) { self.pointer } else { screen.center() };
-        let place = self.view.from_screen(at);
+        let place = self.view.to_canvas(at);
         self.search = Some(Search { purpose, at, place, text: String::new(), chosen: 0, is_new: true });
     }
 

@@ -23,7 +23,7 @@ impl View {
         self.origin + self.pan + point.to_vec2() * self.zoom
     }
 
-    pub fn from_screen(self, point: Pos2) -> Pos2 {
+    pub fn to_canvas(self, point: Pos2) -> Pos2 {
         ((point - self.origin - self.pan) / self.zoom).to_pos2()
     }
 
@@ -31,13 +31,13 @@ impl View {
         Rect::from_min_max(self.to_screen(rect.min), self.to_screen(rect.max))
     }
 
-    pub fn rect_from_screen(self, rect: Rect) -> Rect {
-        Rect::from_min_max(self.from_screen(rect.min), self.from_screen(rect.max))
+    pub fn rect_to_canvas(self, rect: Rect) -> Rect {
+        Rect::from_min_max(self.to_canvas(rect.min), self.to_canvas(rect.max))
     }
 
     /// Nearer by `factor`, so far as is allowed; what is under `at` stays there.
     pub fn zoom_at(&mut self, at: Pos2, factor: f32) {
-        let fixed = self.from_screen(at);
+        let fixed = self.to_canvas(at);
         self.zoom = (self.zoom * factor).clamp(*ZOOM.start(), *ZOOM.end());
         self.pan += at - self.to_screen(fixed);
     }
@@ -90,13 +90,13 @@ mod tests {
     fn there_and_back() {
         let point = pos2(123.0, -45.0);
         assert!(near(view().to_screen(point), pos2(10.0 - 30.0 + 61.5, 20.0 + 7.0 - 22.5)));
-        assert!(near(view().from_screen(view().to_screen(point)), point));
+        assert!(near(view().to_canvas(view().to_screen(point)), point));
     }
 
     #[test]
     fn what_is_under_the_pointer_stays() {
         let (mut view, at) = (view(), pos2(200.0, 100.0));
-        let fixed = view.from_screen(at);
+        let fixed = view.to_canvas(at);
         view.zoom_at(at, 3.0);
         assert!(near(view.to_screen(fixed), at) && view.zoom == 1.5);
         view.zoom_at(at, 100.0);

@@ -23,7 +23,7 @@ fn nodes_are_copied_and_pasted_with_their_wires() {
     assert_eq!(harness.state().selected(), ["sun_2", "split_2"]);
     let view = harness.state().canvas.view;
     let layout = &harness.state().project.document().layout;
-    let at = view.from_screen(EMPTY);
+    let at = view.to_canvas(EMPTY);
     // Places are whole points.
     assert!((layout["sun_2"][0] - f64::from(at.x)).abs() <= 0.5);
     assert_eq!(layout["split_2"][0] - layout["sun_2"][0], 280.0);

@@ -63,9 +63,10 @@ fn pictures() {
         std::path::PathBuf::from(std::env::var("TYNDALL_PICTURES").unwrap_or("target/pictures".into()));
     std::fs::create_dir_all(&folder).unwrap();
     for theme in [egui::Theme::Dark, egui::Theme::Light] {
-        for graph in ["small", "beams"] {
+        for graph in ["small", "beams", "groups"] {
             let document = match graph {
                 "small" => Document::parse(SCENE, Path::new("")).unwrap(),
+                "groups" => Document::parse(super::groups::GROUPS, Path::new("")).unwrap(),
                 graph => Document::load(&Path::new("graphs").join(format!("{graph}.json"))).unwrap(),
             };
             let builder = Harness::builder().with_size(Vec2::new(1280.0, 700.0)).with_theme(theme).wgpu();
@@ -80,6 +81,12 @@ fn pictures() {
                 picture.save(folder.join(name)).unwrap();
             };
             shown(&mut harness, "all");
+            if graph == "beams" {
+                let factor = 0.5 / harness.state().canvas.view.zoom;
+                harness.state_mut().canvas.view.zoom_at(Pos2::new(640.0, 350.0), factor);
+                harness.run_steps(2);
+                shown(&mut harness, "half");
+            }
             if graph == "small" {
                 let from = at(&harness, "output moon.light");
                 let to = at(&harness, "input march.medium");
@@ -91,5 +98,39 @@ fn pictures() {
                 shown(&mut harness, "search");
             }
         }
+    }
+}
+
+/// Prints what a frame of 500 nodes costs; `cargo test --release canvas::tests::looks -- --ignored --nocapture`.
+#[test]
+#[ignore = "measures"]
+fn frames_of_500_nodes() {
+    let mut document = Document::parse(r#"{"tyndall": 1, "nodes": {}}"#, Path::new("")).unwrap();
+    for part in 0..100 {
+        let beams = Document::parse(SCENE, Path::new("")).unwrap();
+        document.paste(&beams, [f64::from(part % 10) * 900.0, f64::from(part / 10) * 500.0]);
+    }
+    assert_eq!(document.nodes.len(), 500);
+    let mut harness = window_of(document);
+    for zoom in [None, Some(0.5), Some(1.0)] {
+        if let Some(zoom) = zoom {
+            let view = harness.state().canvas.view;
+            harness.state_mut().canvas.view.zoom_at(Pos2::new(500.0, 350.0), zoom / view.zoom);
+        }
+        harness.run_steps(3);
+        let context = harness.ctx.clone();
+        let start = std::time::Instant::now();
+        const N_FRAMES: u32 = 20;
+        for _ in 0..N_FRAMES {
+            harness.step();
+        }
+        let step = start.elapsed() / N_FRAMES;
+        let shapes = harness.output().shapes.clone();
+        let start = std::time::Instant::now();
+        let n_meshes = context.tessellate(shapes, 1.0).len();
+        println!(
+            "zoom {zoom:?}: {step:?} a frame with AccessKit, {:?} to tessellate {n_meshes}",
+            start.elapsed()
+        );
     }
 }

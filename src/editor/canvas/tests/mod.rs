@@ -1,6 +1,7 @@
 //! Every gesture by AccessKit names, on a canvas alone in a window of 1000 × 700 points.
 
 mod commands;
+mod groups;
 mod looks;
 mod pointer;
 mod wiring;

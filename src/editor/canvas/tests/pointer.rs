@@ -144,7 +144,7 @@ fn the_wheel_zooms_at_the_pointer_and_a_trackpad_pans() {
     let over = at(&harness, "node march");
     harness.hover_at(over);
     harness.step();
-    let (before, zoom) = (harness.state().canvas.view.from_screen(over), harness.state().canvas.view.zoom);
+    let (before, zoom) = (harness.state().canvas.view.to_canvas(over), harness.state().canvas.view.zoom);
     let wheel =
         |unit, delta| Event::MouseWheel { unit, delta, phase: TouchPhase::Move, modifiers: Modifiers::NONE };
     harness.event(wheel(MouseWheelUnit::Line, vec2(0.0, 3.0)));
@@ -152,7 +152,7 @@ fn the_wheel_zooms_at_the_pointer_and_a_trackpad_pans() {
     let view = harness.state().canvas.view;
     assert!(view.zoom > 1.2 * zoom, "{} {zoom}", view.zoom);
     // Places near 1e3 in f32 after twenty small zooms.
-    assert!((view.from_screen(over) - before).length() < 1e-2);
+    assert!((view.to_canvas(over) - before).length() < 1e-2);
     harness.event(wheel(MouseWheelUnit::Point, vec2(10.0, 25.0)));
     harness.run_steps(20);
     assert_eq!(harness.state().canvas.view.zoom, view.zoom);
