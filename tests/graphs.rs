@@ -194,3 +194,13 @@ fn the_sun_is_where_the_sky_says() {
     assert!(off < 0.5 * 2f64.sqrt() * texel, "{off} rad");
     assert!((1..=9).contains(&n_lit), "{n_lit} texels of sun");
 }
+
+/// What a field of every node says is no parameter of one.
+#[test]
+fn no_kind_has_a_reserved_name() {
+    assert!(nodes::catalog().find(tyndall::graph::GROUP).is_none());
+    for kind in nodes::catalog().0 {
+        let is_reserved = |name: &str| tyndall::graph::RESERVED.contains(&name);
+        assert!(kind.params.iter().all(|param| !is_reserved(param.name)), "{}", kind.id);
+    }
+}

@@ -62,7 +62,10 @@ fn list(all: &[&NodeSpec]) -> String {
         }
     }
     text + "`tyndall nodes NAME` shows ports and parameters. Numbers, vectors, colors and directions may change with\n\
-            the frame: {\"keys\": [[1, 0.5], [48, 2]]} goes from 0.5 in frame 1 to 2 in frame 48.\n"
+            the frame: {\"keys\": [[1, 0.5], [48, 2]]} goes from 0.5 in frame 1 to 2 in frame 48.\n\
+            Every node may have \"mute\": true (as if it were not there) or \"bypass\": true (what comes in goes through).\n\
+            A node of type group holds \"nodes\" and \"wires\" of its own; its \"inputs\" and \"outputs\" say what its\n\
+            ports stand for: {\"image\": \"march.image\"}. Such nodes are group/march on the command line.\n"
 }
 
 fn describe(spec: &NodeSpec) -> String {

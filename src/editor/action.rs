@@ -4,6 +4,8 @@
 
 use egui::{Key, KeyboardShortcut, Modifiers};
 
+use super::canvas::Command;
+
 /// What can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Action {
@@ -59,6 +61,8 @@ pub enum Action {
     Retry,
     /// The page of shortcuts.
     Shortcuts,
+    /// A command of the canvas, whose keys count while they are meant for it.
+    Canvas(Command),
 }
 
 /// An action as menus, palette and the page of shortcuts show it.
@@ -87,12 +91,21 @@ const fn spec(
     ActionSpec { action, label, menu, shortcut }
 }
 
+const fn canvas(
+    command: Command,
+    label: &'static str,
+    menu: &'static str,
+    shortcut: Option<KeyboardShortcut>,
+) -> ActionSpec {
+    spec(Action::Canvas(command), menu, label, shortcut)
+}
+
 const NONE: Modifiers = Modifiers::NONE;
 const COMMAND: Modifiers = Modifiers::COMMAND;
 const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 
 /// The menus, in their order.
-pub const MENUS: [&str; 4] = ["File", "Edit", "View", "Help"];
+pub const MENUS: [&str; 5] = ["File", "Edit", "Node", "View", "Help"];
 
 /// All actions, in the order of their menus. A shortcut with more modifiers stands before the one with
 /// fewer, because a shortcut is taken by the first that fits.
@@ -105,13 +118,33 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::Quit, "File", "Quit", key(COMMAND, Key::Q)),
     spec(Action::Redo, "Edit", "Redo", key(COMMAND_SHIFT, Key::Z)),
     spec(Action::Undo, "Edit", "Undo", key(COMMAND, Key::Z)),
+    canvas(Command::Cut, "Cut", "Edit", key(COMMAND, Key::X)),
+    canvas(Command::Copy, "Copy", "Edit", key(COMMAND, Key::C)),
+    canvas(Command::Paste, "Paste", "Edit", key(COMMAND, Key::V)),
+    canvas(Command::Duplicate, "Duplicate", "Edit", key(COMMAND, Key::D)),
+    canvas(Command::Delete, "Delete", "Edit", key(NONE, Key::Delete)),
+    canvas(Command::SelectAll, "Select all", "Edit", key(COMMAND, Key::A)),
+    canvas(Command::AddNode, "Add a node", "Node", key(NONE, Key::Tab)),
+    canvas(Command::OpenGroup, "Open the group", "Node", key(COMMAND, Key::ArrowDown)),
+    canvas(Command::LeaveGroup, "Leave the group", "Node", key(COMMAND, Key::ArrowUp)),
+    canvas(Command::AddFrame, "Frame with a comment", "Node", key(COMMAND_SHIFT, Key::F)),
+    canvas(Command::Ungroup, "Ungroup", "Node", key(COMMAND_SHIFT, Key::G)),
+    canvas(Command::Group, "Group", "Node", key(COMMAND, Key::G)),
+    canvas(Command::Mute, "Mute", "Node", key(NONE, Key::M)),
+    canvas(Command::Bypass, "Bypass", "Node", key(NONE, Key::B)),
+    spec(Action::StoreB, "View", "Store picture B", key(COMMAND, Key::F2)),
+    canvas(Command::Rename, "Rename", "Node", key(NONE, Key::F2)),
+    canvas(Command::Arrange, "Arrange nodes", "Node", key(NONE, Key::L)),
+    canvas(Command::FrameAll, "Show all nodes", "View", key(NONE, Key::Home)),
+    canvas(Command::FrameSelected, "Show selected nodes", "View", key(NONE, Key::F)),
+    canvas(Command::ToggleSnap, "Snap to the grid", "View", None),
+    canvas(Command::ToggleMinimap, "Minimap", "View", None),
     spec(Action::Palette, "View", "Command palette", key(COMMAND_SHIFT, Key::P)),
     spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)),
     spec(Action::ActualSize, "View", "Picture at 1:1", key(COMMAND, Key::Num1)),
     spec(Action::FrameMedium, "View", "Frame the medium", key(COMMAND, Key::Num2)),
     spec(Action::Histogram, "View", "Histogram", key(COMMAND, Key::H)),
     spec(Action::StoreA, "View", "Store picture A", key(COMMAND, Key::F1)),
-    spec(Action::StoreB, "View", "Store picture B", key(COMMAND, Key::F2)),
     spec(Action::Play, "View", "Play or stop", key(COMMAND, Key::Space)),
     spec(Action::NextFrame, "View", "Next frame", key(COMMAND, Key::ArrowRight)),
     spec(Action::PreviousFrame, "View", "Previous frame", key(COMMAND, Key::ArrowLeft)),
@@ -125,12 +158,14 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::Shortcuts, "Help", "Shortcuts", key(NONE, Key::Questionmark)),
 ];
 
-/// The actions whose keys were pressed; a text field that has the keyboard keeps its own.
-pub fn pressed(context: &egui::Context) -> Vec<Action> {
+/// The actions whose keys were pressed, those of the canvas only while keys are meant for it; a text field
+/// that has the keyboard keeps its own.
+pub fn pressed(context: &egui::Context, canvas_has_keys: bool) -> Vec<Action> {
     if context.text_edit_focused() {
         return Vec::new();
     }
-    let with_key = ACTIONS.iter().filter_map(|spec| Some((spec.action, spec.shortcut?)));
+    let heard = ACTIONS.iter().filter(|spec| canvas_has_keys || !matches!(spec.action, Action::Canvas(_)));
+    let with_key = heard.filter_map(|spec| Some((spec.action, spec.shortcut?)));
     let taken = with_key.filter(|(_, shortcut)| context.input_mut(|input| input.consume_shortcut(shortcut)));
     taken.map(|(action, _)| action).collect()
 }

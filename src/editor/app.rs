@@ -52,6 +52,8 @@ pub struct App {
     chosen: Option<String>,
     look: Option<Look>,
     pictures: HashMap<String, Picture>,
+    /// Small pictures of what nodes give, by name.
+    thumbnails: HashMap<String, egui::TextureHandle>,
     lattice: Option<Lattice>,
     asked: Option<solving::Asked>,
     /// The revision that was last looked through for frames.
@@ -85,6 +87,7 @@ impl App {
             chosen: None,
             look: None,
             pictures: HashMap::new(),
+            thumbnails: HashMap::new(),
             lattice: None,
             asked: None,
             spanned: None,
@@ -125,6 +128,7 @@ impl App {
             Action::Light => self.theme_to(context, ThemeChoice::Light),
             Action::System => self.theme_to(context, ThemeChoice::System),
             Action::Retry => self.asked = None,
+            Action::Canvas(command) => self.canvas.ask(command),
         }
     }
 
@@ -202,17 +206,19 @@ impl App {
         }
         let width = self.settings.inspector_width;
         let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
-        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection));
+        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
         self.settings.inspector_width = shown.response.rect.width();
         let height = self.settings.canvas_height;
         let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
         let shown = panel
             .frame(Frame::new())
-            .show(ui, |ui| self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses));
+            .show(ui, |ui| self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses, &self.thumbnails));
         self.settings.canvas_height = shown.response.rect.height();
         for request in shown.inner {
             match request {
                 Request::Show(name) => self.chosen = Some(name),
+                Request::Inspect(name) => self.selection.only(&name),
+                Request::SavePreset(name) => self.ask_preset(&name),
             }
         }
         let frame = Frame::central_panel(ui.style()).inner_margin(6.0);
@@ -245,8 +251,8 @@ fn camera_of(document: &Document, name: &str) -> Option<Camera> {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        self.listen();
-        for action in action::pressed(&context) {
+        self.listen(&context);
+        for action in action::pressed(&context, self.canvas.has_keys()) {
             if self.possible().is(action) {
                 self.perform(&context, action);
             }

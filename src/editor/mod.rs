@@ -37,7 +37,7 @@ use crate::template;
 
 pub use action::{ACTIONS, Action, ActionSpec};
 pub use app::App;
-pub use project::Project;
+pub use project::{Autosave, Project, Recoverable, recoverable, state_folder, versions};
 pub use selection::Selection;
 pub use status::{NodeState, NodeStatus, Statuses};
 pub use worker::Worker;

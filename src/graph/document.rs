@@ -66,7 +66,8 @@ pub struct Document {
     pub inputs: IndexMap<String, Vec<End>>,
     /// As a group: what its outputs stand for.
     pub outputs: IndexMap<String, End>,
-    /// The folder at which relative paths start; empty for the working directory. Not part of the file.
+    /// The folder at which relative paths start; empty for the working directory. That of a group is its
+    /// graph's. Not part of the file.
     pub base: PathBuf,
     /// The frame that is looked at; without one sequences and keys are at their first. Not part of the file.
     pub frame: Option<i64>,
@@ -158,12 +159,12 @@ impl Document {
     /// # Errors
     /// Says what is wrong and what is allowed.
     pub fn parse(text: &str, base: &Path) -> Result<Self, DocumentError> {
-        let mut root = match parse_json(text).map_err(DocumentError::Json)? {
-            Json::Object(root) => root,
-            other => {
-                return Err(DocumentError::Form(vec![form("the graph", &other, "an object")]));
-            }
-        };
+        Self::from_json(parse_json(text).map_err(DocumentError::Json)?, base)
+    }
+
+    /// As [`Self::parse`], of JSON that has been read.
+    pub(super) fn from_json(json: Json, base: &Path) -> Result<Self, DocumentError> {
+        let mut root = object(json)?;
         migrate(&mut root, MIGRATIONS)?;
         let (document, problems) = read::graph(root, base);
         if problems.is_empty() { Ok(document) } else { Err(DocumentError::Form(problems)) }
@@ -175,12 +176,7 @@ impl Document {
     /// # Errors
     /// Where it is no JSON object with a version.
     pub fn open_leniently(text: &str, base: &Path) -> Result<(Self, Vec<String>), DocumentError> {
-        let mut root = match parse_json(text).map_err(DocumentError::Json)? {
-            Json::Object(root) => root,
-            other => {
-                return Err(DocumentError::Form(vec![form("the graph", &other, "an object")]));
-            }
-        };
+        let mut root = object(parse_json(text).map_err(DocumentError::Json)?)?;
         let mut left_out = Vec::new();
         match root.get("tyndall").and_then(Json::as_u64).filter(|version| *version > VERSION) {
             Some(version) => left_out.push(format!(
@@ -196,9 +192,14 @@ impl Document {
 
     /// The text of the file, with a line end.
     pub fn to_json(&self) -> String {
+        write::pretty(&Json::Object(self.to_fields()))
+    }
+
+    /// The fields of the file.
+    pub(super) fn to_fields(&self) -> Map<String, Json> {
         let mut root = Map::from_iter([("tyndall".to_owned(), VERSION.into())]);
         root.extend(write::fields(self));
-        write::pretty(&Json::Object(root))
+        root
     }
 
     /// The node of this name, or of `group/inner`.
@@ -235,6 +236,13 @@ impl Document {
         }
     }
 
+    /// Says at which folder relative paths start, in groups too.
+    pub(super) fn set_base(&mut self, base: &Path) {
+        self.base = base.to_owned();
+        let insides = self.nodes.values_mut().filter_map(|node| node.inside.as_mut());
+        insides.for_each(|inside| inside.set_base(base));
+    }
+
     /// Whether some node can be another in another frame.
     pub fn varies(&self, catalog: Catalog) -> bool {
         self.nodes.values().any(|node| node.varies(catalog))
@@ -268,6 +276,13 @@ impl Node {
             Some(inside) => inside.varies(catalog),
             None => catalog.find(&self.type_id).is_some_and(|spec| Params::vary(spec.params, &self.params)),
         }
+    }
+}
+
+fn object(json: Json) -> Result<Map<String, Json>, DocumentError> {
+    match json {
+        Json::Object(fields) => Ok(fields),
+        other => Err(DocumentError::Form(vec![form("the graph", &other, "an object")])),
     }
 }
 

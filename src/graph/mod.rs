@@ -15,6 +15,7 @@ pub mod eval;
 pub mod file;
 pub mod flat;
 pub mod key;
+pub mod layout;
 mod node;
 pub mod params;
 pub mod plan;

@@ -1,4 +1,6 @@
 //! The ports of a node: those of its kind, or those of a group, which have the types of what they stand for.
+//!
+//! Tested by a group with ports of every sort.
 
 use super::document::{Document, End, Node};
 use super::spec::{Catalog, PortSpec};
@@ -66,4 +68,39 @@ fn own(specs: &'static [PortSpec]) -> Vec<Port<'static>> {
 
 fn find(ports: Vec<Port>, name: &str) -> Option<PortSpec> {
     ports.iter().find(|port| port.name == name).map(|port| port.spec)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::graph::spec::PortType;
+    use crate::graph::toy::CATALOG;
+
+    #[test]
+    fn ports_of_a_group_are_what_all_of_them_are() {
+        let text = r#"{"tyndall": 1, "nodes": {"g": {"type": "group",
+            "nodes": {"sum": {"type": "sum"}, "pair": {"type": "pair"}, "fade": {"type": "fade"}, "odd": {"type": "x"}},
+            "wires": [],
+            "inputs": {"many": "sum.lights", "one": ["sum.lights", "pair.a"], "maybe": ["pair.b", "fade.light"],
+                "must": ["fade.light", "pair.a"], "unknown": "odd.x"},
+            "outputs": {"out": "pair.total", "none": "sum.nothing"}}}}"#;
+        let document = Document::parse(text, Path::new("")).unwrap();
+        let group = &document.nodes["g"];
+        let inputs = group.inputs(CATALOG).unwrap();
+        let described: Vec<_> =
+            inputs.iter().map(|port| (port.name, port.spec.many, port.spec.absent.is_some())).collect();
+        assert_eq!(
+            described,
+            [("many", true, false), ("one", false, false), ("maybe", false, true), ("must", false, false)]
+        );
+        let outputs = group.outputs(CATALOG).unwrap();
+        assert_eq!(outputs.len(), 1);
+        assert_eq!((outputs[0].name, outputs[0].spec.kind), ("out", PortType::Light));
+        assert!(Node::new("x").inputs(CATALOG).is_none());
+        let end = |text: &str| text.parse::<End>().unwrap();
+        assert!(document.output(CATALOG, &end("g.out")).is_some());
+        assert!(document.input(CATALOG, &end("g.out")).is_none());
+    }
 }

@@ -16,6 +16,8 @@ enum Purpose {
     Graph,
     Volume,
     Save,
+    /// A group, as a graph of its own.
+    Preset,
 }
 
 /// What comes after the question whether to save.
@@ -40,6 +42,8 @@ pub struct Files {
     /// Saving was asked for on the way to this goal.
     after_save: Option<Goal>,
     may_close: bool,
+    /// The group that is to be written as a preset.
+    preset: Option<crate::graph::Document>,
     /// The title that the window has.
     title: String,
 }
@@ -175,6 +179,17 @@ impl App {
         self.player = Default::default();
     }
 
+    /// Asks where to write a group as a graph of its own.
+    pub(super) fn ask_preset(&mut self, name: &str) {
+        let Some(inside) = self.project.document().inside(name).cloned() else { return };
+        let mut dialog = dialog("Save the group as a preset", self.settings.folder.as_deref())
+            .default_file_name(&format!("{}.json", name.replace('/', "_")));
+        dialog.save_file();
+        let base = self.project.document().base.clone();
+        self.files.preset = Some(template::absolute(crate::graph::Document { base, ..inside }));
+        self.files.dialog = Some((dialog, Purpose::Preset));
+    }
+
     /// Saves to the graph's file, or asks for one; whether it was saved.
     pub(super) fn save(&mut self) -> bool {
         match self.project.file().map(Path::to_owned) {
@@ -242,6 +257,13 @@ impl App {
                     let saved = self.save_to(&path);
                     if let Some(goal) = self.files.after_save.take().filter(|_| saved) {
                         self.go(goal);
+                    }
+                }
+                Purpose::Preset => {
+                    let text = self.files.preset.take().map(|document| document.to_json()).unwrap_or_default();
+                    match crate::image::atomic::write(&path, text.as_bytes()) {
+                        Ok(()) => self.toasts.say(format!("Saved {}", path.display())),
+                        Err(error) => self.toasts.complain(error),
                     }
                 }
                 Purpose::Graph | Purpose::Volume => self.open(&path),

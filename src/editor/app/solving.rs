@@ -5,9 +5,11 @@ use glam::DVec3;
 use super::App;
 use crate::editor::NodeState;
 use crate::editor::look::{self, Look};
-use crate::editor::viewport::Picture;
+use crate::editor::viewport::{self, Picture, Tone};
 use crate::editor::worker::{Ask, Reply, Solved};
 use crate::graph::{Document, Event, PortType, flatten};
+use crate::image::Image;
+use crate::image::tonemap::Curve;
 use crate::nodes::catalog;
 use crate::volume::Lattice;
 use crate::wire::Medium;
@@ -57,6 +59,7 @@ impl App {
         }
         self.statuses.retain(|name, _| document.nodes.contains_key(name));
         self.pictures.retain(|name, _| document.nodes.contains_key(name));
+        self.thumbnails.retain(|name, _| document.nodes.contains_key(name));
         let look = self.look.clone();
         let looked_at = look.iter().map(|look| look.source.node.clone()).collect();
         let mut rest = look::harmless(&document);
@@ -69,7 +72,7 @@ impl App {
         self.asked = Some(Asked { revision, frame, is_drag, look, number, document });
     }
 
-    pub(super) fn listen(&mut self) {
+    pub(super) fn listen(&mut self, context: &egui::Context) {
         for (number, reply) in self.worker.replies() {
             let is_last = self.asked.as_ref().is_none_or(|asked| asked.number == number);
             match reply {
@@ -78,7 +81,7 @@ impl App {
                     self.figures.trouble = None;
                 }
                 Reply::Event { event, is_full } => self.note(event, is_full && is_last),
-                Reply::Solved(solved) => self.take(solved, is_last),
+                Reply::Solved(solved) => self.take(context, solved, is_last),
                 Reply::Rested => self.figures.running = None,
                 Reply::Trouble { message, retries } => {
                     self.figures.running = None;
@@ -90,7 +93,7 @@ impl App {
         self.figures.n_failed = failed.count();
     }
 
-    fn take(&mut self, solved: Solved, is_last: bool) {
+    fn take(&mut self, context: &egui::Context, solved: Solved, is_last: bool) {
         let Solved { level, values, costs, wall_ms, cache_bytes, gpu_bytes } = solved;
         (self.figures.cache_bytes, self.figures.gpu_bytes) = (cache_bytes, gpu_bytes);
         let source = self.look.as_ref().map(|look| look.source.clone());
@@ -116,6 +119,7 @@ impl App {
                         self.player.known.insert(frame);
                     }
                 }
+                self.small_picture(context, &name, value.get());
                 self.pictures.insert(name, Picture { value, level });
             } else if value.kind == PortType::Medium && level.is_full() {
                 // Its lattice alone: the medium's fields are the cache's to keep or drop.
@@ -125,6 +129,21 @@ impl App {
         if level.is_full() {
             for cost in costs.into_iter().filter(|cost| !cost.cached) {
                 self.statuses.entry(cost.name).or_default().gpu_ms = cost.gpu_ms;
+            }
+        }
+    }
+
+    /// The picture of a node, as small as the canvas shows it.
+    fn small_picture(&mut self, context: &egui::Context, name: &str, image: &Image) {
+        // What a tone_map gives is display light already.
+        let kind = self.project.document().node(name).map(|node| node.type_id.as_str());
+        let curve = if kind == Some("raymarch") { Curve::Aces } else { Curve::None };
+        let small = viewport::thumbnail(image, Tone { exposure_ev: 0.0, curve });
+        match self.thumbnails.get_mut(name) {
+            Some(texture) => texture.set(small, egui::TextureOptions::LINEAR),
+            None => {
+                let texture = context.load_texture(format!("small {name}"), small, egui::TextureOptions::LINEAR);
+                self.thumbnails.insert(name.to_owned(), texture);
             }
         }
     }

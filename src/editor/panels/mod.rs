@@ -44,7 +44,8 @@ impl Possible {
             Action::Undo => self.undo,
             Action::Redo => self.redo,
             Action::Play | Action::NextFrame | Action::PreviousFrame => self.frames,
-            Action::Save
+            Action::Canvas(_)
+            | Action::Save
             | Action::SaveAs
             | Action::FitPicture
             | Action::ActualSize

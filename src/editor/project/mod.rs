@@ -1,14 +1,27 @@
 //! The graph that is open: its document, its undo, its file. No window: everything here is tested without.
 //!
+//! Work is never lost: a file appears whole or not at all, and a disk that fails is told and changes nothing;
+//! [`Autosave`] writes what is not saved beside the state of the program, and [`recoverable`] finds it after a
+//! kill; [`versions`] keeps what was saved before.
+//!
 //! A change is a whole new document, and undo keeps the old one: graphs are small (a node is some hundred
 //! bytes), so a step costs less than the bookkeeping of a difference would. A gesture that goes on over
 //! many frames (a drag) is one step: edits with the same gesture are merged until it is another's turn.
 
+mod autosave;
+mod file;
+pub mod versions;
+
 use std::path::{Path, PathBuf};
 
-use crate::graph::{Document, DocumentError};
-use crate::image::atomic::{self, WriteError};
-use crate::nodes::catalog;
+use crate::graph::Document;
+
+pub use autosave::{Autosave, Recoverable, recoverable};
+
+/// Where recovery and versions of this user's graphs are kept; `None` where the system names no such folder.
+pub fn state_folder() -> Option<PathBuf> {
+    Some(dirs::state_dir().or_else(dirs::data_local_dir)?.join("tyndall"))
+}
 
 /// A graph and its history.
 #[derive(Debug, Default)]
@@ -23,6 +36,12 @@ pub struct Project {
     /// Counts changes of the document.
     revision: u64,
     saved: Option<Document>,
+    /// What of its file was not understood.
+    left_out: Vec<String>,
+    /// Where versions are kept.
+    state: Option<PathBuf>,
+    /// What went wrong beside the saving.
+    warning: Option<String>,
 }
 
 #[derive(Debug)]
@@ -36,15 +55,6 @@ impl Project {
     /// A new graph that has no file yet.
     pub fn new(document: Document) -> Self {
         Self { document, ..Self::default() }
-    }
-
-    /// The graph of a file.
-    ///
-    /// # Errors
-    /// Those of [`Document::load`].
-    pub fn load(path: &Path) -> Result<Self, DocumentError> {
-        let document = Document::load(path)?;
-        Ok(Self { saved: Some(document.clone()), document, file: Some(path.to_owned()), ..Self::default() })
     }
 
     /// The graph as it is now.
@@ -106,18 +116,14 @@ impl Project {
         Some(label)
     }
 
-    /// Writes the graph to a file, which is its own from now on.
-    ///
-    /// # Errors
-    /// Where the file cannot be written; the one that is there stays as it was.
-    pub fn save_as(&mut self, path: &Path) -> Result<(), WriteError> {
-        let folder = path.parent().unwrap_or(Path::new(""));
-        self.document.rebase(catalog(), &std::path::absolute(folder).unwrap_or_else(|_| folder.to_owned()));
-        atomic::write(path, self.document.to_json().as_bytes())?;
-        self.saved = Some(self.document.clone());
-        self.file = Some(path.to_owned());
-        self.revision += 1;
-        Ok(())
+    /// Whether a step can be taken back.
+    pub fn can_undo(&self) -> bool {
+        !self.undo.is_empty()
+    }
+
+    /// Whether a step can be done again.
+    pub fn can_redo(&self) -> bool {
+        !self.redo.is_empty()
     }
 
     /// Whether a step can be taken back.
@@ -151,30 +157,4 @@ impl Project {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn say(text: &'static str) -> impl FnOnce(&mut Document) {
-        move |document| document.about = text.to_owned()
-    }
-
-    #[test]
-    fn a_gesture_is_one_step() {
-        let mut project = Project::default();
-        project.edit("first", say("a"));
-        for text in ["b", "c", "d"] {
-            project.edit_during(egui::Id::new("drag"), "drag", say(text));
-        }
-        project.edit("nothing", say("d"));
-        assert_eq!(project.undo().as_deref(), Some("drag"));
-        assert_eq!(project.document().about, "a");
-        assert_eq!(project.redo().as_deref(), Some("drag"));
-        assert_eq!(project.document().about, "d");
-        project.undo();
-        project.edit("other", say("e"));
-        assert_eq!(project.redo(), None);
-        assert_eq!((project.undo().as_deref(), project.undo().as_deref()), (Some("other"), Some("first")));
-        assert_eq!(project.undo(), None);
-        assert_eq!(project.document().about, "");
-    }
-}
+mod tests;

@@ -15,7 +15,8 @@ const INSIDE: [&str; 8] = ["about", "nodes", "wires", "layout", "bends", "frames
 pub(super) fn graph(mut root: Map<String, Json>, base: &Path) -> (Document, Vec<String>) {
     root.shift_remove("tyndall");
     let mut reader = Reader { place: String::new(), is_root: true, problems: Vec::new() };
-    let document = Document { base: base.to_owned(), ..reader.document(root) };
+    let mut document = reader.document(root);
+    document.set_base(base);
     (document, reader.problems)
 }
 

@@ -28,7 +28,7 @@ impl Document {
         let is_in = |end: &End| names.contains(&end.node);
         let idx = self.nodes.get_index_of(&names[0]).expect("asked above");
         let first = names.iter().filter_map(|name| self.nodes.get_index_of(name)).min().unwrap_or(idx);
-        let mut inside = Document { base: Default::default(), ..self.part(names) };
+        let mut inside = self.part(names);
         let mut rest = self.clone();
         rest.nodes.retain(|name, _| !names.contains(name));
         let group = rest.free_name(like);
@@ -64,11 +64,7 @@ impl Document {
             *end = of_group(port_of(&mut inside.outputs, end, end.clone()));
         }
         rest.layout.retain(|name, _| !names.contains(name));
-        let places: Vec<[f64; 2]> = inside.layout.values().copied().collect();
-        if !places.is_empty() {
-            let mean = |axis: usize| places.iter().map(|at| at[axis]).sum::<f64>() / places.len() as f64;
-            rest.layout.insert(group.clone(), [mean(0), mean(1)]);
-        }
+        rest.layout.extend(middle(&inside).map(|at| (group.clone(), at)));
         (rest.wires, rest.bends) = (wires, bends);
         let n_before = self.nodes.keys().take(first).filter(|name| !names.contains(name)).count();
         rest.nodes.shift_insert(n_before, group.clone(), Node::group(inside));
@@ -95,7 +91,6 @@ impl Document {
         }
         let Document { inputs, outputs, .. } = inside.clone();
         (inside.inputs, inside.outputs) = Default::default();
-        let place = self.layout.get(name).copied();
         let idx = self.nodes.get_index_of(name).expect("found above");
         let mut rest = self.clone();
         let (wires, bends) = (std::mem::take(&mut rest.wires), std::mem::take(&mut rest.bends));
@@ -104,7 +99,10 @@ impl Document {
         rest.nodes.shift_remove(name);
         rest.layout.shift_remove(name);
         let olds: Vec<String> = inside.nodes.keys().cloned().collect();
-        let offset = offset_to(&inside, place);
+        let offset = match (self.layout.get(name), middle(&inside)) {
+            (Some(place), Some(middle)) => [place[0] - middle[0], place[1] - middle[1]],
+            _ => [0.0; 2],
+        };
         let n_nodes = rest.nodes.len();
         let names = rest.paste(&inside, offset);
         let inner_wires = std::mem::take(&mut rest.wires);
@@ -156,20 +154,15 @@ impl Document {
         let Some(inside) = node.inside.as_deref() else {
             return Err(format!("'{name}' is no group; group it first"));
         };
-        Ok(Document { base: self.base.clone(), ..inside.clone() })
+        Ok(inside.clone())
     }
 }
 
-/// How far the middle of what a group holds is from a place.
-fn offset_to(inside: &Document, place: Option<[f64; 2]>) -> [f64; 2] {
-    let count = inside.layout.len() as f64;
-    match place {
-        Some(place) if count > 0.0 => {
-            let mean = |axis: usize| inside.layout.values().map(|at| at[axis]).sum::<f64>() / count;
-            [place[0] - mean(0), place[1] - mean(1)]
-        }
-        _ => [0.0; 2],
-    }
+/// The middle of the places of nodes, in whole points as people like to read them.
+fn middle(document: &Document) -> Option<[f64; 2]> {
+    let count = document.layout.len() as f64;
+    let mean = |axis: usize| (document.layout.values().map(|at| at[axis]).sum::<f64>() / count).round();
+    (count > 0.0).then(|| [mean(0), mean(1)])
 }
 
 /// The port of a group that stands for `end`; a new one has the port's own name, or `node_port` where that is
@@ -188,3 +181,6 @@ fn port_of<T: PartialEq>(ports: &mut IndexMap<String, T>, end: &End, stands_for:
     ports.insert(name.clone(), stands_for);
     name
 }
+
+#[cfg(test)]
+mod tests;

@@ -99,3 +99,62 @@ impl Document {
         self.bends.retain(|wire, _| wires.contains(wire));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+
+    const TEXT: &str = r#"{"tyndall": 1, "nodes": {"a": {"type": "x"}, "b": {"type": "y"}, "c": {"type": "y"}},
+        "wires": ["a.out -> b.in", "b.out -> c.in"], "layout": {"a": [0, 1], "b": [2, 3]},
+        "bends": {"a.out -> b.in": [[1, 1]]}, "inputs": {"in": ["a.in", "b.in"]}, "outputs": {"out": "a.out"}}"#;
+
+    fn document() -> Document {
+        Document::parse(TEXT, Path::new("")).unwrap()
+    }
+
+    #[test]
+    fn all_that_names_a_node_follows_its_name() {
+        let mut document = document();
+        document.rename("a", "sun").unwrap();
+        let expected = TEXT.replace("\"a\"", "\"sun\"").replace("a.out", "sun.out").replace("a.in", "sun.in");
+        assert_eq!(document.to_json(), Document::parse(&expected, Path::new("")).unwrap().to_json());
+        document.rename("sun", "a").unwrap();
+        // Maps are equal in any order, the text is not.
+        assert_eq!(document.to_json(), self::document().to_json());
+    }
+
+    #[test]
+    fn a_wrong_name_changes_nothing() {
+        let mut document = document();
+        let mut refused = |from: &str, to: &str| document.rename(from, to).unwrap_err();
+        assert_eq!(refused("a", "b"), "there is a node 'b' already; 'b_2' is free");
+        assert_eq!(refused("a", "a.b"), "'a.b' is no name of a node; write letters, digits, '_' and '-'");
+        assert_eq!(refused("d", "e"), "'d': there is no such node; nodes are a, b, c");
+        document.rename("a", "a").unwrap();
+        assert_eq!(document, self::document());
+    }
+
+    #[test]
+    fn what_belongs_to_a_node_goes_with_it() {
+        let mut document = document();
+        document.remove(&["a".to_owned(), "nobody".to_owned()]);
+        let left = r#"{"tyndall": 1, "nodes": {"b": {"type": "y"}, "c": {"type": "y"}}, "wires": ["b.out -> c.in"],
+            "layout": {"b": [2, 3]}, "inputs": {"in": "b.in"}}"#;
+        assert_eq!(document, Document::parse(left, Path::new("")).unwrap());
+    }
+
+    #[test]
+    fn a_free_name_counts_up() {
+        let mut document = document();
+        assert_eq!((document.free_name("d"), document.free_name("a")), ("d".to_owned(), "a_2".to_owned()));
+        document.rename("a", "b_2").unwrap();
+        assert_eq!(
+            (document.free_name("b"), document.free_name("b_2")),
+            ("b_3".to_owned(), "b_3".to_owned())
+        );
+        assert_eq!(document.add_node("b", Node::new("x"), [5.0, 6.0]), "b_3");
+        assert_eq!(document.layout["b_3"], [5.0, 6.0]);
+    }
+}

@@ -12,10 +12,11 @@ impl Document {
     /// same files from there, relative where that is possible; with an empty `base` they become absolute.
     /// Absolute paths stay. Paths of what is written stay too: a picture belongs beside its graph.
     pub fn rebase(&mut self, catalog: Catalog, base: &Path) {
-        let old = std::mem::replace(&mut self.base, base.to_owned());
+        let old = self.base.clone();
         if old != base {
             move_paths(self, catalog, &old, base);
         }
+        self.set_base(base);
     }
 }
 
@@ -80,4 +81,35 @@ fn relative(file: &Path, folder: &Path) -> PathBuf {
     }
     let up = folder.components().skip(n_common).map(|_| Component::ParentDir);
     up.chain(file.components().skip(n_common)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::graph::toy::CATALOG;
+
+    fn path_after(path: &str, old: &str, new: &str) -> String {
+        let text = format!(
+            r#"{{"tyndall": 1, "nodes": {{"g": {{"type": "group", "nodes": {{"f": {{"type": "file", "path": "{path}"}},
+                "save": {{"type": "save", "path": "out.png"}}}}}}}}}}"#
+        );
+        let mut document = Document::parse(&text, Path::new(old)).unwrap();
+        document.rebase(CATALOG, Path::new(new));
+        assert_eq!(document.inside("g").unwrap().base, Path::new(new));
+        assert_eq!(document.node("g/save").unwrap().params["path"], "out.png");
+        document.node("g/f").unwrap().params["path"].as_str().unwrap().to_owned()
+    }
+
+    #[test]
+    fn relative_paths_lead_to_the_same_files() {
+        assert_eq!(path_after("../data/a.vdb", "/x/graphs", "/x/graphs"), "../data/a.vdb");
+        assert_eq!(path_after("../data/a.vdb", "/x/graphs", "/x"), "data/a.vdb");
+        assert_eq!(path_after("a.vdb", "/x/graphs", "/x/presets/mine"), "../../graphs/a.vdb");
+        assert_eq!(path_after("./b/../a.vdb", "/x/graphs", "/y"), "../x/graphs/a.vdb");
+        assert_eq!(path_after("../data/a.vdb", "/x/graphs", ""), "/x/data/a.vdb");
+        assert_eq!(path_after("/data/a.vdb", "/x/graphs", "/x"), "/data/a.vdb");
+        // A graph without a folder is in the working directory.
+        let here = std::env::current_dir().unwrap();
+        assert_eq!(path_after("a.vdb", "", here.to_str().unwrap()), "a.vdb");
+    }
 }

@@ -150,3 +150,6 @@ impl Document {
         })
     }
 }
+
+#[cfg(test)]
+mod tests;

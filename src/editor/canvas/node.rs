@@ -1,0 +1,314 @@
+//! What a node looks like: header, ports, state, cost, what was left out.
+//!
+//! From near it shows everything; below half size the labels of ports go, below a third only its name is
+//! left, over the whole of it. Tested by the texts of cost and state.
+
+use egui::{Align2, Color32, CornerRadius, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2};
+
+use super::super::{NodeState, NodeStatus};
+use super::paint::Brush;
+use super::scene::{FOOTER, NodeShape, PortShape, ROW, Side, THUMBNAIL};
+
+/// How a node is drawn besides what it tells.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct NodeLook {
+    pub is_selected: bool,
+    pub is_hovered: bool,
+    pub is_focused: bool,
+    /// Drawn behind what can be connected.
+    pub is_dim: bool,
+    pub time: f64,
+}
+
+/// What of a port is not the document's.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum PortLook {
+    Plain,
+    Hot,
+    /// A wire that is being drawn does not fit.
+    Dim,
+}
+
+impl Brush<'_> {
+    /// The node but for its ports.
+    pub fn node(
+        &self,
+        node: &NodeShape,
+        status: &NodeStatus,
+        look: NodeLook,
+        picture: Option<egui::TextureId>,
+    ) {
+        let zoom = self.view.zoom;
+        let rect = self.view.rect_to_screen(node.rect);
+        let radius = (7.0 * zoom).round().clamp(1.0, 16.0) as u8;
+        let corners = CornerRadius::same(radius);
+        let opacity = if look.is_dim {
+            0.35
+        } else if node.mute {
+            0.45
+        } else {
+            1.0
+        };
+        if zoom > 0.3 && !look.is_dim {
+            let shadow = egui::epaint::Shadow {
+                offset: [0, (3.0 * zoom) as i8],
+                blur: (14.0 * zoom) as u8,
+                spread: 0,
+                color: self.theme.shadow,
+            };
+            self.painter.add(shadow.as_shape(rect, corners));
+        }
+        let body = if look.is_hovered {
+            self.theme.node.lerp_to_gamma(self.theme.text, 0.03)
+        } else {
+            self.theme.node
+        };
+        let head_color = self.theme.header(node);
+        let head_color = head_color.gamma_multiply(opacity);
+        let body = body.gamma_multiply(opacity);
+        let head = Rect::from_min_size(rect.min, vec2(rect.width(), node.header * zoom));
+        if zoom < NEAR_NAMES {
+            self.painter.rect_filled(rect, corners, head_color);
+        } else {
+            self.painter.rect_filled(rect, corners, body);
+            self.painter.rect_filled(head, CornerRadius { sw: 0, se: 0, ..corners }, head_color);
+        }
+        self.outline(rect, radius, status, look);
+        let white = Color32::WHITE.gamma_multiply(opacity);
+        let inset = 10.0 * zoom;
+        let state = self.state_rect(node);
+        if zoom < NEAR_NAMES {
+            let width = rect.width() - 4.0;
+            self.text(
+                rect.center(),
+                Align2::CENTER_CENTER,
+                &node.name,
+                (30.0 * zoom).clamp(8.0, 11.0),
+                white,
+                width,
+            );
+            return;
+        }
+        let size = (13.0 * zoom).max((9.0_f32).min(head.height() - 2.0));
+        let width = state.left() - head.left() - 1.5 * inset;
+        let line = super::scene::HEADER * zoom;
+        let middle = pos2(head.left() + inset, head.top() + line / 2.0);
+        self.text(middle, Align2::LEFT_CENTER, &node.name, size, white, width);
+        if node.type_id != node.name {
+            let at = pos2(head.left() + inset, head.bottom() - 5.0 * zoom);
+            let faint = Color32::from_white_alpha(200).gamma_multiply(opacity);
+            self.text(at, Align2::LEFT_BOTTOM, &node.type_id, 10.5 * zoom, faint, head.width() - 2.0 * inset);
+        }
+        self.state(state, status, look.time);
+        if let Some(picture) = picture {
+            let top = rect.bottom() - (FOOTER + THUMBNAIL + 2.0) * zoom;
+            let size = vec2(rect.width() - 12.0 * zoom, (THUMBNAIL - 4.0) * zoom);
+            let place = Rect::from_min_size(pos2(rect.left() + 6.0 * zoom, top), size);
+            let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
+            self.painter.image(picture, place, uv, Color32::WHITE.gamma_multiply(opacity));
+        }
+        let foot = pos2(rect.left() + inset, rect.bottom() - FOOTER * 0.5 * zoom);
+        let weak = self.theme.weak.gamma_multiply(opacity);
+        let silent = [(node.mute, "muted"), (node.bypass, "bypassed")].into_iter().find(|(is, _)| *is);
+        let (text, color) =
+            silent.map_or((cost(status), weak), |(_, word)| (word.to_owned(), self.theme.stale));
+        self.text(foot, Align2::LEFT_CENTER, &text, 10.5 * zoom, color, rect.width() * 0.62);
+        if node.bypass && !node.mute {
+            self.through(node);
+        }
+        let n_left_out = left_out(status).count();
+        if n_left_out > 0 {
+            let badge = self.badge_rect(node);
+            self.painter.rect_filled(
+                badge,
+                badge.height() / 2.0,
+                self.theme.weak.gamma_multiply(0.22 * opacity),
+            );
+            let text = format!("{n_left_out} left out");
+            self.text(badge.center(), Align2::CENTER_CENTER, &text, 10.0 * zoom, weak, badge.width());
+        }
+    }
+
+    /// A line from the first input to the first output of its type, as the value goes.
+    fn through(&self, node: &NodeShape) {
+        for output in node.side(Side::Output) {
+            let input = node.side(Side::Input).find(|input| input.kind == output.kind && input.is_wired);
+            let Some(input) = input else { continue };
+            let ends = [input.at, output.at].map(|at| self.view.to_screen(at));
+            let color = self.theme.port(output.kind).gamma_multiply(0.6);
+            self.curve(&ends, (2.0 * self.view.zoom).max(1.0), color);
+        }
+    }
+
+    fn outline(&self, rect: Rect, radius: u8, status: &NodeStatus, look: NodeLook) {
+        let stroke = match &status.state {
+            _ if look.is_selected => Stroke::new(2.0, self.theme.accent),
+            NodeState::Failed(_) => Stroke::new(2.0, self.theme.bad),
+            NodeState::Running => Stroke::new(1.5, self.theme.accent.gamma_multiply(0.6)),
+            _ => Stroke::new(1.0, self.theme.outline),
+        };
+        self.painter.rect_stroke(rect, CornerRadius::same(radius), stroke, StrokeKind::Outside);
+        if look.is_selected && matches!(status.state, NodeState::Failed(_)) {
+            let stroke = Stroke::new(1.5, self.theme.bad);
+            self.painter.rect_stroke(rect, CornerRadius::same(radius), stroke, StrokeKind::Inside);
+        }
+        if look.is_focused {
+            let stroke = Stroke::new(1.0, self.theme.text);
+            let corners = CornerRadius::same(radius.saturating_add(3));
+            self.painter.rect_stroke(rect.expand(4.0), corners, stroke, StrokeKind::Middle);
+        }
+    }
+
+    /// Where the state is drawn, on the screen.
+    pub fn state_rect(&self, node: &NodeShape) -> Rect {
+        let rect = self.view.rect_to_screen(node.rect);
+        let at = rect.right_top() + vec2(-14.0, super::scene::HEADER / 2.0) * self.view.zoom;
+        Rect::from_center_size(at, Vec2::splat(14.0 * self.view.zoom))
+    }
+
+    /// Where it stands how much was left out, on the screen.
+    pub fn badge_rect(&self, node: &NodeShape) -> Rect {
+        let rect = self.view.rect_to_screen(node.rect);
+        let size = vec2(60.0, 15.0) * self.view.zoom;
+        Rect::from_min_size(rect.right_bottom() - vec2(66.0, 17.5) * self.view.zoom, size)
+    }
+
+    fn state(&self, rect: Rect, status: &NodeStatus, time: f64) {
+        let (at, radius) = (rect.center(), rect.width() * 0.33);
+        // Headers are of any hue, so the state stands on a disk of its own.
+        self.painter.circle_filled(at, rect.width() * 0.5, Color32::from_black_alpha(70));
+        let width = (1.6 * self.view.zoom).max(1.0);
+        let ring = |color| self.painter.circle_stroke(at, radius, Stroke::new(width, color));
+        let dot = |color| self.painter.circle_filled(at, radius, color);
+        let white = Color32::from_white_alpha(130);
+        // The colors of the dark table, because the disk is dark in both.
+        let [good, stale, bad] = [
+            Color32::from_rgb(124, 221, 142),
+            Color32::from_rgb(255, 205, 92),
+            Color32::from_rgb(255, 128, 122),
+        ];
+        match &status.state {
+            NodeState::Idle => drop(ring(white)),
+            NodeState::Stale => drop(ring(stale)),
+            NodeState::Done if status.cached => {
+                ring(good);
+                self.painter.circle_filled(at, radius * 0.45, good);
+            }
+            NodeState::Done => drop(dot(good)),
+            NodeState::Failed(_) => {
+                dot(bad);
+                self.text(at, Align2::CENTER_CENTER, "!", 11.0 * self.view.zoom, Color32::BLACK, 40.0);
+            }
+            NodeState::Skipped(_) => {
+                let bar = vec2(radius, 0.0);
+                self.painter.line_segment([at - bar, at + bar], Stroke::new(width, white));
+            }
+            NodeState::Running => {
+                let start = (time * 5.0) as f32;
+                let arc = (0..=14).map(|i| at + Vec2::angled(start + i as f32 * 0.3) * radius);
+                self.painter.add(Shape::line(arc.collect(), Stroke::new(width, Color32::WHITE)));
+            }
+        }
+    }
+
+    /// A port and its name.
+    pub fn port(&self, port: &PortShape, look: PortLook) {
+        let zoom = self.view.zoom;
+        if zoom < NEAR_PORTS {
+            return;
+        }
+        let at = self.view.to_screen(port.at);
+        let dim = if look == PortLook::Dim { 0.25 } else { 1.0 };
+        let color = self.theme.port(port.kind).gamma_multiply(dim);
+        let radius = (5.0 * zoom).max(2.5) + if look == PortLook::Hot { 1.5 } else { 0.0 };
+        // An input that takes many is as tall as several.
+        let tall = if port.many { radius * 0.8 } else { 0.0 };
+        let rect = Rect::from_center_size(at, vec2(2.0 * radius, 2.0 * (radius + tall)));
+        let fill = if port.is_wired { color } else { self.theme.node };
+        if look == PortLook::Hot {
+            self.painter.rect_filled(rect.expand(5.0 * zoom), radius + 6.0, color.gamma_multiply(0.3));
+        }
+        self.painter.rect_filled(rect, radius, fill);
+        let ring = if port.is_wired { self.theme.outline } else { color };
+        self.painter.rect_stroke(rect, radius, Stroke::new((1.6 * zoom).max(1.0), ring), StrokeKind::Inside);
+        if zoom < NEAR_LABELS {
+            return;
+        }
+        let (align, dx) = match port.port.side {
+            Side::Input => (Align2::LEFT_CENTER, 11.0),
+            Side::Output => (Align2::RIGHT_CENTER, -11.0),
+        };
+        // What must be wired and is not stands out.
+        let missing = port.is_required && !port.is_wired;
+        let text = if missing { self.theme.text } else { self.theme.weak }.gamma_multiply(dim);
+        let size = (11.5 * zoom).max((8.0_f32).min(ROW * zoom));
+        let width = super::scene::WIDTH * zoom * 0.6;
+        self.text(at + vec2(dx * zoom, 0.0), align, &port.port.end.port, size, text, width);
+    }
+}
+
+/// Zooms from which names, ports and their labels are drawn.
+const NEAR_NAMES: f32 = 0.34;
+pub const NEAR_PORTS: f32 = 0.22;
+const NEAR_LABELS: f32 = 0.42;
+
+/// "12 ms · 3.4 MiB"; nothing of what never ran.
+pub fn cost(status: &NodeStatus) -> String {
+    let ms = if status.gpu_ms > 0.0 { status.gpu_ms.max(status.cpu_ms) } else { status.cpu_ms };
+    let time = match ms {
+        ms if ms <= 0.0 => String::new(),
+        ms if ms < 10.0 => format!("{ms:.1} ms"),
+        ms if ms < 1000.0 => format!("{ms:.0} ms"),
+        ms => format!("{:.1} s", ms / 1000.0),
+    };
+    let mut parts = vec![time];
+    if status.bytes > 0 {
+        parts.push(memory(status.bytes));
+    }
+    parts.retain(|part| !part.is_empty());
+    parts.join(" · ")
+}
+
+fn memory(bytes: u64) -> String {
+    let units = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let (mut size, mut unit) = (bytes as f64, 0);
+    while size >= 1000.0 && unit + 1 < units.len() {
+        (size, unit) = (size / 1024.0, unit + 1);
+    }
+    let digits = usize::from(unit > 0 && size < 10.0);
+    format!("{size:.digits$} {}", units[unit])
+}
+
+/// What the scene did not require.
+pub fn left_out(status: &NodeStatus) -> impl Iterator<Item = &crate::graph::Decision> {
+    status.report.decisions.iter().filter(|decision| !decision.kept)
+}
+
+/// The state in words.
+pub fn state_text(status: &NodeStatus) -> String {
+    match &status.state {
+        NodeState::Idle => "idle: nothing that is shown needs it".to_owned(),
+        NodeState::Stale => "stale: something that it depends on changed".to_owned(),
+        NodeState::Running => "running".to_owned(),
+        NodeState::Done if status.cached => "done, from the cache".to_owned(),
+        NodeState::Done => "done".to_owned(),
+        NodeState::Failed(message) => format!("failed: {message}"),
+        NodeState::Skipped(because) => format!("skipped, because {because} failed"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn costs_read_well() {
+        let of = |cpu_ms, gpu_ms, bytes| cost(&NodeStatus { cpu_ms, gpu_ms, bytes, ..NodeStatus::default() });
+        assert_eq!(of(12.3, 0.0, 3_565_158), "12 ms · 3.4 MiB");
+        assert_eq!(of(0.0, 0.0, 0), "");
+        assert_eq!(of(0.25, 0.0, 0), "0.2 ms");
+        assert_eq!(of(2.0, 4321.0, 0), "4.3 s");
+        assert_eq!(of(0.0, 0.0, 999), "999 B");
+        assert_eq!(of(0.0, 0.0, 123 << 30), "123 GiB");
+    }
+}
