@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
 use tyndall::graph::{CancelToken, Document, Target, check};
-use tyndall::image::{self, ALPHA, Image};
+use tyndall::image::{self, ALPHA, Image, Table};
 use tyndall::nodes;
 
 fn folder(name: &str) -> PathBuf {
@@ -105,6 +105,10 @@ fn presets_show_a_medium() {
     let mut flaws = Vec::new();
     for path in presets() {
         let mut document = Document::load(&path).unwrap();
+        // What shows data and lights nothing is looked at below.
+        if !document.nodes.values().any(|node| node.type_id == "raymarch") {
+            continue;
+        }
         let has_surfaces = document.nodes.values().any(|node| node.type_id == "mesh");
         // Rays that look for surfaces cost more than all else.
         let resolution = format!("medium.max_resolution={}", if has_surfaces { 16 } else { 32 });
@@ -132,6 +136,33 @@ fn presets_show_a_medium() {
         eprintln!("{name}: {:.0} ms", solved.wall_ms);
     }
     assert!(flaws.is_empty(), "\n{}", flaws.join("\n"));
+}
+
+/// Slice, transfer function and histogram of the plume: each shows both the plume and what is beside it.
+#[test]
+fn the_explorer_shows_its_data() {
+    let Some(mut session) = common::session() else { return };
+    let mut document = Document::load(&folder("graphs/explore.json")).unwrap();
+    for set in ["camera.width=64", "camera.height=36", "slice.resolution=64"] {
+        let (name, value) = set.split_once('=').unwrap();
+        document.set(nodes::catalog(), name, value).unwrap();
+    }
+    let targets = ["slice", "look", "histogram"];
+    let solved = session.solve(&document, Target::Nodes(&targets), &CancelToken::new(), &mut |_| ());
+    let failures: Vec<_> = solved.evaluation.failures().collect();
+    assert!(failures.is_empty(), "{failures:?}");
+    let value = |node: &str, port: &str| solved.evaluation.value(node, port).unwrap().clone();
+    for node in ["slice", "look"] {
+        let image = value(node, "image");
+        let image: &Image = image.get();
+        assert!(image.layers.values().flat_map(|layer| &layer.data).all(|x| x.is_finite()), "{node}");
+        let shown = image.pixels().iter().filter(|[r, g, b]| r.max(*g).max(*b) > 0.1).count();
+        let n_pixels = image.width * image.height;
+        assert!((n_pixels / 50..n_pixels).contains(&shown), "{node}: {shown} of {n_pixels}");
+    }
+    let table = value("histogram", "table");
+    let counts = table.get::<Table>().column("count").unwrap();
+    assert!(counts.iter().sum::<f64>() > 10_000.0 && counts.iter().filter(|n| **n > 0.0).count() > 10);
 }
 
 #[test]

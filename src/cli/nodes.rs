@@ -166,6 +166,9 @@ struct ParamJson {
     soft: Option<(f64, f64)>,
     #[serde(skip_serializing_if = "Option::is_none")]
     choices: Option<Json>,
+    /// Of the rows of a curve.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    columns: Option<&'static [&'static str]>,
     #[serde(skip_serializing_if = "Option::is_none")]
     length: Option<usize>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -202,6 +205,8 @@ impl ParamJson {
             ParamKind::Int => ("int", None, None, None),
             ParamKind::Bool => ("bool", None, None, None),
             ParamKind::Text => ("text", None, None, None),
+            ParamKind::Grid => ("grid", None, None, None),
+            ParamKind::Curve(columns) => ("curve", None, Some(columns.len()), None),
             ParamKind::IntChoice(choices) => ("int_choice", Some(choices.into()), None, None),
             ParamKind::Choice(choices) => ("choice", Some(choices.into()), None, None),
             ParamKind::Path => ("path", None, None, None),
@@ -226,6 +231,10 @@ impl ParamJson {
             open_max,
             soft: param.soft,
             choices,
+            columns: match param.kind {
+                ParamKind::Curve(columns) => Some(columns),
+                _ => None,
+            },
             length,
             members: members.map(|members| members.iter().map(Self::of).collect()),
             doc: param.doc,

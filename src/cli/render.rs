@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use tyndall::gpu::AdapterChoice;
 use tyndall::graph::{CancelToken, Document, Evaluation, Plan, Target};
-use tyndall::image::{Image, atomic};
+use tyndall::image::{Image, Table, atomic};
 use tyndall::nodes::catalog;
 use tyndall::session::{Session, Solved};
 
@@ -30,14 +30,14 @@ const INTERRUPTED: u8 = 130;
 pub struct Args {
     /// The graph, a JSON file.
     pub graph: PathBuf,
-    /// The picture, .exr or .png, instead of the path in the graph's save_image; with --frames, #### is
-    /// the frame's number.
+    /// The picture, .exr or .png, or the table, .csv, instead of the path in the graph's save node; with
+    /// --frames, #### is the frame's number.
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Set a parameter to a JSON value, such as medium.g=0.8; may be given several times.
     #[arg(long, value_name = "NODE.PARAM=VALUE")]
     pub set: Vec<String>,
-    /// The save_image to run, or another node whose image -o is to show.
+    /// The save node to run, or another node whose image or table -o is to show.
     #[arg(long, value_name = "NAME")]
     pub node: Option<String>,
     /// Frames to render: 7, 1-100 or 1-100x2 (every second); sets `frame` of every load_vdb
@@ -252,6 +252,10 @@ fn describe(output: &Output, evaluation: &Evaluation) -> String {
     if let Some(value) = evaluation.value(&output.node, "image") {
         let image: &Image = value.get();
         text += &format!(": {}x{}", image.width, image.height);
+    }
+    if let Some(value) = evaluation.value(&output.node, "table") {
+        let table: &Table = value.get();
+        text += &format!(": {} rows", table.rows.len());
     }
     if let Ok(found) = std::fs::metadata(&output.path) {
         text += &format!(", {}", size(found.len()));

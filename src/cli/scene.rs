@@ -1,7 +1,8 @@
 //! The graph as the command line wants it: parameters set, outputs chosen, everything checked.
 //!
-//! Whatever is written is written by a save_image node. `--node` of another node, or `-o` for a graph
-//! without any, adds one to the graph in memory. Nothing is rendered before all problems are known.
+//! Whatever is written is written by a save node, pictures by save_image and tables by save_table. `--node` of
+//! another node, or `-o` for a graph without any, adds one to the graph in memory, which of the two is said by the
+//! ending of `-o`. Nothing is rendered before all problems are known.
 
 use std::path::{Path, PathBuf};
 
@@ -9,14 +10,32 @@ use serde_json::Value as Json;
 use tyndall::graph::{
     Document, DocumentError, End, Node, PortType, Target, Wire, check, did_you_mean, flatten,
 };
-use tyndall::image::{Format, atomic};
+use tyndall::image::{Format, atomic, table};
 use tyndall::nodes::catalog;
 
 use super::frames;
 use super::output::Lines;
 use super::render::Args;
 
-const SAVE: &str = "save_image";
+/// What is written: the node that writes it, what it reads, what that is called, and a node that gives it.
+struct Kind {
+    save: &'static str,
+    port: PortType,
+    /// The name of the input.
+    input: &'static str,
+    giver: &'static str,
+    file: &'static str,
+}
+
+const PICTURE: Kind = Kind {
+    save: "save_image",
+    port: PortType::Image,
+    input: "image",
+    giver: "raymarch",
+    file: "picture.exr",
+};
+const TABLE: Kind =
+    Kind { save: "save_table", port: PortType::Table, input: "table", giver: "histogram", file: "table.csv" };
 const CAMERA: &str = "camera";
 
 /// What is to be rendered.
@@ -27,10 +46,10 @@ pub struct Scene {
     pub outputs: Vec<Output>,
 }
 
-/// A picture to be written.
+/// A picture or table to be written.
 #[derive(Debug, Clone)]
 pub struct Output {
-    /// The save_image node.
+    /// The save_image or save_table node.
     pub node: String,
     /// Relative to the working directory; may be a pattern with `#` for the frame.
     pub path: PathBuf,
@@ -55,7 +74,7 @@ impl Scene {
             Output { node, path }
         });
         let outputs: Vec<Output> = outputs.collect();
-        check_outputs(&outputs, args.frames.is_some())?;
+        check_outputs(&document, &outputs, args.frames.is_some())?;
         if args.frames.is_some() && !document.varies(catalog()) {
             anyhow::bail!(
                 "--frames: nothing in the graph changes with the frame, no load_vdb and no parameter with keys; leave it out"
@@ -158,79 +177,104 @@ fn set_size(document: &mut Document, width: u32, height: u32) -> anyhow::Result<
     Ok(())
 }
 
-/// The save_image nodes that are to run; one is added where another node is to be looked at.
+/// What a path is the file of: `.csv` of a table, all else of a picture.
+fn kind_of(output: Option<&Path>) -> &'static Kind {
+    match output {
+        Some(path) if table::check_ending(path).is_ok() => &TABLE,
+        _ => &PICTURE,
+    }
+}
+
+fn is_save(node: &Node) -> bool {
+    [PICTURE, TABLE].iter().any(|kind| kind.save == node.type_id)
+}
+
+/// The save nodes that are to run; one is added where another node is to be looked at.
 fn choose(document: &mut Document, args: &Args) -> anyhow::Result<Vec<String>> {
+    let kind = kind_of(args.output.as_deref());
+    let Kind { save, file, .. } = kind;
     if let Some(name) = &args.node {
         let Some(node) = document.nodes.get(name) else {
             let names: Vec<&str> = document.nodes.keys().map(String::as_str).collect();
             let near = did_you_mean(name, names.iter().copied());
             anyhow::bail!("--node '{name}': there is no such node;{near} nodes are {}", names.join(", "));
         };
-        if node.type_id == SAVE {
+        if is_save(node) {
             return Ok(vec![name.clone()]);
         }
-        if image_port(node).is_none() {
-            let givers = list(document, |node| image_port(node).is_some());
+        // Without -o it is not known what was meant; any of the two is as good for the message below.
+        let is_table =
+            args.output.is_none() && port(node, &PICTURE).is_none() && port(node, &TABLE).is_some();
+        let kind = if is_table { &TABLE } else { kind };
+        if port(node, kind).is_none() {
+            let (what, giver) = (kind.input, kind.giver);
+            let givers = list(document, |node| port(node, kind).is_some());
             if givers.is_empty() {
-                anyhow::bail!("--node '{name}' gives no image, nor does another node; add a raymarch");
+                anyhow::bail!("--node '{name}' gives no {what}, nor does another node; add a {giver}");
             }
-            anyhow::bail!("--node '{name}' gives no image; those that do are {givers}");
+            anyhow::bail!("--node '{name}' gives no {what}; those that do are {givers}");
         }
         if args.output.is_none() {
-            anyhow::bail!("--node '{name}' is no save_image; say where to write with -o picture.exr");
+            let Kind { save, file, .. } = kind;
+            anyhow::bail!("--node '{name}' is no {save}; say where to write with -o {file}");
         }
-        return Ok(vec![add_save(document, &name.clone())]);
+        return Ok(vec![add_save(document, &name.clone(), kind)]);
     }
-    let saves: Vec<String> = document
-        .nodes
-        .iter()
-        .filter(|(_, node)| node.type_id == SAVE)
-        .map(|(name, _)| name.clone())
-        .collect();
+    let is_meant = |node: &Node| match &args.output {
+        Some(_) => node.type_id == save,
+        None => is_save(node),
+    };
+    let saves = document.nodes.iter().filter(|(_, node)| is_meant(node));
+    let saves: Vec<String> = saves.map(|(name, _)| name.clone()).collect();
     match (saves.len(), &args.output) {
         (0, None) => {
-            anyhow::bail!("the graph has no save_image node; say where to write with -o picture.exr")
+            anyhow::bail!("the graph has no {save} node; say where to write with -o {file}")
         }
-        (0, Some(_)) => Ok(vec![add_save(document, &last_image(document)?)]),
+        (0, Some(_)) => Ok(vec![add_save(document, &last_giver(document, kind)?, kind)]),
         (1, _) | (_, None) => Ok(saves),
         _ => anyhow::bail!(
-            "the graph has several save_image nodes ({}); say with --node which of them -o is for",
+            "the graph has several {save} nodes ({}); say with --node which of them -o is for",
             saves.join(", ")
         ),
     }
 }
 
-/// The one node that gives an image which nobody reads.
-fn last_image(document: &Document) -> anyhow::Result<String> {
+/// The one node that gives an image, or a table, which nobody reads.
+fn last_giver(document: &Document, kind: &Kind) -> anyhow::Result<String> {
+    let Kind { input: what, giver, .. } = kind;
     let is_read = |name: &String| document.wires.iter().any(|wire| wire.from.node == *name);
-    let mut last = document.nodes.iter().filter(|(name, node)| image_port(node).is_some() && !is_read(name));
+    let mut last = document.nodes.iter().filter(|(name, node)| port(node, kind).is_some() && !is_read(name));
     match (last.next(), last.next()) {
         (Some((name, _)), None) => Ok(name.clone()),
-        (None, _) => anyhow::bail!("no node of the graph gives an image; add a raymarch"),
+        (None, _) => {
+            let article = if *what == "image" { "an" } else { "a" };
+            anyhow::bail!("no node of the graph gives {article} {what}; add a {giver}")
+        }
         _ => {
-            let givers = list(document, |node| image_port(node).is_some());
-            anyhow::bail!("several nodes give an image ({givers}); say with --node which to write")
+            let article = if *what == "image" { "an" } else { "a" };
+            let givers = list(document, |node| port(node, kind).is_some());
+            anyhow::bail!("several nodes give {article} {what} ({givers}); say with --node which to write")
         }
     }
 }
 
-/// Adds a save_image that reads `giver`, and gives its name.
-fn add_save(document: &mut Document, giver: &str) -> String {
+/// Adds a save node that reads `giver`, and gives its name.
+fn add_save(document: &mut Document, giver: &str, kind: &Kind) -> String {
     let mut name = "output".to_owned();
     while document.nodes.contains_key(&name) {
         name.push('_');
     }
-    let port = image_port(&document.nodes[giver]).unwrap_or_default();
+    let port = port(&document.nodes[giver], kind).unwrap_or_default();
     let end = |node: &str, port: &str| End { node: node.to_owned(), port: port.to_owned() };
-    document.wires.push(Wire { from: end(giver, port), to: end(&name, "image") });
-    document.nodes.insert(name.clone(), Node::new(SAVE));
+    document.wires.push(Wire { from: end(giver, port), to: end(&name, kind.input) });
+    document.nodes.insert(name.clone(), Node::new(kind.save));
     name
 }
 
-/// The first output of a node that is an image.
-fn image_port(node: &Node) -> Option<&'static str> {
+/// The first output of a node that is an image, or a table.
+fn port(node: &Node, kind: &Kind) -> Option<&'static str> {
     let spec = catalog().find(&node.type_id)?;
-    spec.outputs.iter().find(|port| port.kind == PortType::Image).map(|port| port.name)
+    spec.outputs.iter().find(|port| port.kind == kind.port).map(|port| port.name)
 }
 
 fn list(document: &Document, is_meant: impl Fn(&Node) -> bool) -> String {
@@ -239,18 +283,21 @@ fn list(document: &Document, is_meant: impl Fn(&Node) -> bool) -> String {
     names.join(", ")
 }
 
-/// The path of a save_image whose parameters have been checked.
+/// The path of a save node whose parameters have been checked.
 fn saved_path(node: &Node) -> String {
-    let spec = catalog().find(SAVE).and_then(|spec| spec.param("path"));
+    let spec = catalog().find(&node.type_id).and_then(|spec| spec.param("path"));
     let default = spec.and_then(|spec| spec.default_json());
     let path = node.params.get("path").cloned().or(default);
     path.as_ref().and_then(Json::as_str).unwrap_or_default().to_owned()
 }
 
 /// Refuses, before anything is rendered, what could not be written afterwards.
-fn check_outputs(outputs: &[Output], has_frames: bool) -> anyhow::Result<()> {
+fn check_outputs(document: &Document, outputs: &[Output], has_frames: bool) -> anyhow::Result<()> {
     for (idx, output) in outputs.iter().enumerate() {
-        Format::of(&output.path)?;
+        match document.nodes[&output.node].type_id == TABLE.save {
+            true => table::check_ending(&output.path)?,
+            false => drop(Format::of(&output.path)?),
+        }
         if !has_frames && frames::is_pattern(&output.path) {
             anyhow::bail!(
                 "{}: # stands for a frame's number; add --frames 1-100, or write a name without #",

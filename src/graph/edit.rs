@@ -106,7 +106,7 @@ fn find_param(field: &str, mut specs: &'static [ParamSpec]) -> Result<&'static P
 
 fn read_value(field: &str, spec: &ParamSpec, text: &str, base: &Path) -> Result<Json, String> {
     let is_path = matches!(spec.kind, ParamKind::Path | ParamKind::OutPath);
-    let takes_text = is_path || matches!(spec.kind, ParamKind::Text | ParamKind::Choice(_));
+    let takes_text = is_path || matches!(spec.kind, ParamKind::Text | ParamKind::Grid | ParamKind::Choice(_));
     let json = match parse_json(text) {
         Ok(json) => json,
         Err(_) if takes_text => text.into(),

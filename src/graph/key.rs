@@ -97,6 +97,12 @@ impl Fields {
                 let bits = values.iter().flat_map(|x| x.to_bits().to_le_bytes());
                 self.tagged(6, &bits.collect::<Vec<u8>>());
             }
+            ParamValue::Rows(rows) => {
+                self.count(8);
+                self.count(rows.len());
+                let bits = rows.iter().flatten().flat_map(|x| x.to_bits().to_le_bytes());
+                self.bytes(&bits.collect::<Vec<u8>>());
+            }
             ParamValue::Record(params) => {
                 self.count(7);
                 self.params(params.iter());

@@ -38,7 +38,7 @@ pub use eval::{
 pub use file::FileState;
 pub use flat::{Flattened, Silence, flatten};
 pub use key::Key;
-pub use params::{Moment, ParamProblem, ParamValue, Params};
+pub use params::{Moment, ParamProblem, ParamValue, Params, check_value};
 pub use plan::{Job, Plan, Source, Target, Work};
 pub use ports::Port;
 pub use report::{Decision, Report, StageWork};

@@ -48,6 +48,8 @@ pub enum ParamValue {
     Path(PathBuf),
     /// A vector, color or direction.
     Floats(Vec<f64>),
+    /// The control points of a curve, row by row.
+    Rows(Vec<Vec<f64>>),
     /// A record.
     Record(Params),
 }
@@ -167,6 +169,15 @@ impl Params {
         scaled.map(|x| x / length)
     }
 
+    /// The control points of a curve, `None` when it is null.
+    pub fn rows(&self, name: &str) -> Option<&[Vec<f64>]> {
+        match self.get(name) {
+            ParamValue::Rows(rows) => Some(rows),
+            ParamValue::Null => None,
+            other => mistake(name, "rows", other),
+        }
+    }
+
     /// A record, `None` when it is null.
     pub fn record(&self, name: &str) -> Option<&Params> {
         match self.get(name) {
@@ -181,6 +192,21 @@ impl Params {
         let (_, value) = entry.unwrap_or_else(|| panic!("parameter '{name}' is not declared"));
         value
     }
+}
+
+/// One value as a file could give it, checked before it is written into a document; `field` is its name
+/// in messages.
+///
+/// # Errors
+/// What is wrong, each component and record member on its own.
+pub fn check_value(
+    field: &str,
+    spec: &ParamSpec,
+    json: &Json,
+    base: &Path,
+    moment: Moment,
+) -> Result<ParamValue, Vec<ParamProblem>> {
+    parse(field, spec, json, &Reading { base, moment })
 }
 
 fn mistake(name: &str, asked: &str, found: &ParamValue) -> ! {
@@ -282,7 +308,7 @@ pub(super) fn parse(
             _ => refuse(format!("{field} is {number}; allowed are {}", list(choices))),
         },
         (ParamKind::Bool, Json::Bool(b)) => Ok(ParamValue::Bool(*b)),
-        (ParamKind::Text, Json::String(text)) => Ok(ParamValue::Text(text.clone())),
+        (ParamKind::Text | ParamKind::Grid, Json::String(text)) => Ok(ParamValue::Text(text.clone())),
         (ParamKind::Choice(choices), Json::String(text)) => {
             if choices.contains(&text.as_str()) {
                 return Ok(ParamValue::Text(text.clone()));
@@ -313,6 +339,9 @@ pub(super) fn parse(
             }
             Ok(ParamValue::Floats(values))
         }
+        (ParamKind::Curve(columns), Json::Array(rows)) if is_table(rows, columns.len()) => {
+            curve(field, spec, columns, rows).map(ParamValue::Rows)
+        }
         (ParamKind::Record(specs), Json::Object(given)) => {
             resolve_in(&format!("{field}."), specs, given, reading).map(ParamValue::Record)
         }
@@ -326,6 +355,41 @@ fn has_no_length(direction: &[f64]) -> bool {
 
 fn all_numbers(items: &[Json], count: usize) -> bool {
     items.len() == count && items.iter().all(Json::is_number)
+}
+
+fn is_table(rows: &[Json], width: usize) -> bool {
+    let is_row = |row: &Json| row.as_array().is_some_and(|items| all_numbers(items, width));
+    !rows.is_empty() && rows.iter().all(is_row)
+}
+
+/// Rows whose first number rises; the others are inside the hard limits.
+fn curve(
+    field: &str,
+    spec: &ParamSpec,
+    columns: &[&str],
+    rows: &[Json],
+) -> Result<Vec<Vec<f64>>, Vec<ParamProblem>> {
+    let mut values: Vec<Vec<f64>> = Vec::with_capacity(rows.len());
+    let mut problems = Vec::new();
+    let mut refuse = |message: String| problems.push(ParamProblem { field: field.to_owned(), message });
+    for (idx, row) in rows.iter().enumerate() {
+        let items = row.as_array().map_or(&[][..], Vec::as_slice);
+        let row: Vec<f64> = items.iter().map(|item| item.as_f64().unwrap_or(f64::NAN)).collect();
+        let name = columns[0];
+        if !row[0].is_finite() {
+            refuse(format!("{field}[{idx}].{name} = {} is no finite number", items[0]));
+        } else if values.last().is_some_and(|before| before[0] >= row[0]) {
+            let before = values[idx - 1][0];
+            refuse(format!("{field}[{idx}].{name} = {} does not rise from {before}", items[0]));
+        }
+        for ((x, item), column) in row.iter().zip(items).zip(columns).skip(1) {
+            if !spec.hard.contains(*x) {
+                refuse(format!("{field}[{idx}].{column} = {item} is outside {}", spec.hard));
+            }
+        }
+        values.push(row);
+    }
+    if problems.is_empty() { Ok(values) } else { Err(problems) }
 }
 
 /// `3` and `3.0` are whole; `3.5` and what an i64 cannot hold are not.

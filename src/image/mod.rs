@@ -15,12 +15,14 @@
 //! Tested by round trips, damaged files, and real environment maps where they are present.
 
 pub mod atomic;
+pub mod colormap;
 pub mod exr;
 pub mod flip;
 pub mod hdr;
 pub mod metrics;
 pub mod png;
 pub mod ssim;
+pub mod table;
 pub mod tonemap;
 
 use std::io;
@@ -189,6 +191,9 @@ impl ImageError {
         Self::NotSupported { path: path.to_owned(), found: found.into(), remedy }
     }
 }
+
+pub use colormap::Colormap;
+pub use table::Table;
 
 /// What a picture is written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -15,6 +15,7 @@ mod camera;
 mod environment;
 #[cfg(test)]
 mod extremes;
+mod histogram;
 #[cfg(test)]
 mod hits;
 mod importance_propagation;
@@ -28,15 +29,20 @@ mod oracle_scene;
 mod point_light;
 mod prefilter;
 mod principal_propagation;
+mod probe;
 mod raymarch;
 mod save_image;
+mod save_table;
+mod scalar;
 mod shadow;
 mod shape;
+mod slice;
 mod spherical_propagation;
 mod sun;
 #[cfg(test)]
 mod testing;
 mod tone_map;
+mod transfer_function;
 mod transform;
 mod walk;
 
@@ -57,8 +63,13 @@ pub static KINDS: &[NodeKind] = &[
     spherical_propagation::KIND,
     isotropic_residual::KIND,
     raymarch::KIND,
+    slice::KIND,
+    transfer_function::KIND,
+    histogram::KIND,
+    probe::KIND,
     tone_map::KIND,
     save_image::KIND,
+    save_table::KIND,
 ];
 
 /// A node as the session runs it.

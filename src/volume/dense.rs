@@ -29,6 +29,43 @@ impl Dense {
         }
     }
 
+    /// The same with a border of one voxel of what stands outside, and each value as `value` makes it.
+    pub fn padded(&self, outside: f32, value: impl Fn(f32) -> f32) -> Self {
+        let [nx, ny, nz] = self.dims;
+        let dims = self.dims.map(|n| n + 2);
+        let mut values = vec![value(outside); dims.iter().product()];
+        for z in 0..nz {
+            for y in 0..ny {
+                let from = nx * (y + ny * z);
+                let to = 1 + dims[0] * (y + 1 + dims[1] * (z + 1));
+                for x in 0..nx {
+                    values[to + x] = value(self.values[from + x]);
+                }
+            }
+        }
+        let world_from_index = self.world_from_index * DMat4::from_translation(DVec3::NEG_ONE);
+        Self { dims, values, world_from_index }
+    }
+
+    /// The trilinear value at index coordinates; what stands outside takes part.
+    pub fn trilinear(&self, p: DVec3, outside: f64) -> f64 {
+        let low = p.floor();
+        let t = p - low;
+        let value = |corner: [f64; 3]| {
+            let at: [f64; 3] = std::array::from_fn(|axis| low[axis] + corner[axis]);
+            let is_inside = (0..3).all(|axis| at[axis] >= 0.0 && at[axis] < self.dims[axis] as f64);
+            let [x, y, z] = at.map(|n| n as usize);
+            if is_inside {
+                f64::from(self.values[x + self.dims[0] * (y + self.dims[1] * z)])
+            } else {
+                outside
+            }
+        };
+        let along_x = |y, z| value([0.0, y, z]) * (1.0 - t.x) + value([1.0, y, z]) * t.x;
+        let along_y = |z| along_x(0.0, z) * (1.0 - t.y) + along_x(1.0, z) * t.y;
+        along_y(0.0) * (1.0 - t.z) + along_y(1.0) * t.z
+    }
+
     /// Edge of a voxel along its first axis in meters.
     pub fn voxel_m(&self) -> f64 {
         self.world_from_index.x_axis.truncate().length()
@@ -73,6 +110,28 @@ impl Dense {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn trilinear_reproduces_products_of_lines() {
+        let mut dense = Dense::centered([3, 4, 5], 1.0);
+        let function = |p: DVec3| (1.0 + p.x) * (2.0 - 0.5 * p.y) * (3.0 + 0.25 * p.z);
+        for (idx, value) in dense.values.iter_mut().enumerate() {
+            // Halves and quarters: exact in f32.
+            *value = function(DVec3::new((idx % 3) as f64, (idx / 3 % 4) as f64, (idx / 12) as f64)) as f32;
+        }
+        for p in [DVec3::new(0.3, 2.7, 1.9), DVec3::new(2.0, 3.0, 4.0), DVec3::new(0.0, 0.5, 0.0)] {
+            // Seven mixes of values up to 24.
+            assert!((dense.trilinear(p, 9.0) - function(p)).abs() < 14.0 * 24.0 * f64::EPSILON, "{p}");
+        }
+        let first = f64::from(dense.values[0]);
+        assert_eq!(dense.trilinear(DVec3::new(-0.25, 0.0, 0.0), 2.0), 0.75 * first + 0.25 * 2.0);
+        assert_eq!(dense.trilinear(DVec3::splat(1e12), 7.0), 7.0);
+        let padded = dense.padded(7.0, |value| 2.0 * value);
+        assert_eq!((padded.dims, padded.values[0]), ([5, 6, 7], 14.0));
+        assert_eq!(padded.trilinear(DVec3::ONE, 0.0), 2.0 * first);
+        let corner = padded.world_from_index.transform_point3(DVec3::ONE);
+        assert!((corner - dense.world_from_index.transform_point3(DVec3::ZERO)).length() < 1e-12);
+    }
 
     #[test]
     fn slices_have_their_largest() {

@@ -163,6 +163,14 @@ impl Volume {
         }
     }
 
+    /// The file's index coordinates of the first voxel that [`Volume::signed_grid`] gives.
+    ///
+    /// # Errors
+    /// As [`Volume::grid`].
+    pub fn first_voxel(&self, name: &str) -> Result<IVec3, VolumeError> {
+        Ok(self.decoded(name)?.min)
+    }
+
     fn decoded(&self, name: &str) -> Result<Decoded, VolumeError> {
         match &self.source {
             Source::Shape { dense, .. } if name == "density" => {

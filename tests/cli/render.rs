@@ -154,3 +154,29 @@ fn interrupted_frames_are_whole() {
         assert_eq!(image::read(&desk.path(file)).unwrap().width, 32, "{file}");
     }
 }
+
+#[test]
+fn a_table_is_written_as_csv() {
+    let desk = Desk::new();
+    desk.write(
+        "count.json",
+        r#"{ "tyndall": 1, "nodes": {
+            "ball": { "type": "shape", "kind": "box", "resolution": 8 },
+            "counts": { "type": "histogram", "bins": 2, "range": [0, 2] } },
+            "wires": ["ball.volume -> counts.volume"] }"#,
+    );
+    let refused = |args: &[&str], why: &str| {
+        desk.run_blind(&[&["render", "count.json"], args].concat()).refused(&format!("error: {why}\n"));
+    };
+    refused(&["--node", "ball", "-o", "h.csv"], "--node 'ball' gives no table; those that do are counts");
+    refused(&["--node", "ball", "-o", "h.exr"], "--node 'ball' gives no image; those that do are counts");
+    if !has_adapter() {
+        return;
+    }
+    desk.run(&["render", "count.json", "--node", "counts", "-o", "h.csv"]).done();
+    // The box fills its 8³ voxels; a value on the border of two bins is in the upper one.
+    assert_eq!(std::fs::read_to_string(desk.path("h.csv")).unwrap(), "low,high,count\n0,1,0\n1,2,512\n");
+    // The only table of the graph needs no name.
+    desk.run(&["render", "count.json", "-o", "again.csv"]).done();
+    desk.run(&["render", "count.json", "-o", "bars.png"]).done();
+}

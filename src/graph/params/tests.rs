@@ -170,3 +170,29 @@ fn undeclared_name() {
 fn undeclared_form() {
     Params::defaults(ALL).unwrap().i64("g");
 }
+
+const CURVES: &[ParamSpec] = &[ParamSpec::curve("points", &["value", "r", "opacity"]).between(0.0, 1.0)];
+
+#[test]
+fn curves_rise() {
+    let resolve = |json: Json| {
+        let given = json!({ "points": json });
+        Params::resolve(CURVES, given.as_object().unwrap(), Path::new(""), Moment::default())
+    };
+    let params = resolve(json!([[-3, 0, 0.5], [2.5, 1, 1]])).unwrap();
+    assert_eq!(params.rows("points").unwrap(), [[-3.0, 0.0, 0.5], [2.5, 1.0, 1.0]]);
+    assert!(resolve(Json::Null).unwrap().rows("points").is_none());
+    let form = "1 or more rows [value, r, opacity] with rising value, the others 0..=1, or null";
+    let cases = [
+        (json!([]), format!("points is []; write {form}")),
+        (json!([[0, 1]]), format!("points is [[0,1]]; write {form}")),
+        (json!([[0, 1, "a"]]), format!(r#"points is [[0,1,"a"]]; write {form}"#)),
+        (json!([[0, 1, 1], [0, 1, 1]]), "points[1].value = 0 does not rise from 0".to_owned()),
+        (json!([[5, 1, 1], [4, 1, 1]]), "points[1].value = 4 does not rise from 5".to_owned()),
+        (json!([[0, 1, 2]]), "points[0].opacity = 2 is outside 0..=1".to_owned()),
+    ];
+    for (json, message) in cases {
+        let problems = resolve(json.clone()).expect_err("a mistake");
+        assert_eq!((problems.len(), &problems[0].message), (1, &message), "{json}");
+    }
+}

@@ -43,6 +43,8 @@ pub enum ParamKind {
     Bool,
     /// A string.
     Text,
+    /// The name of a grid of the volume that the node reads.
+    Grid,
     /// One of these strings.
     Choice(&'static [&'static str]),
     /// A file or folder that is read.
@@ -55,6 +57,9 @@ pub enum ParamKind {
     Rgb,
     /// Three numbers, not all zero; need not be of unit length.
     Direction,
+    /// Control points: rows of numbers by these names, of which the first rises from row to row and is
+    /// not bound by the limits.
+    Curve(&'static [&'static str]),
     /// An object with these parameters, or null.
     Record(&'static [ParamSpec]),
 }
@@ -141,6 +146,16 @@ impl ParamSpec {
     /// A string.
     pub const fn text(name: &'static str, default: &'static str) -> Self {
         Self::new(name, ParamKind::Text, Default::Text(default))
+    }
+
+    /// The name of a grid.
+    pub const fn grid(name: &'static str, default: &'static str) -> Self {
+        Self::new(name, ParamKind::Grid, Default::Text(default))
+    }
+
+    /// Control points with these columns, null by default.
+    pub const fn curve(name: &'static str, columns: &'static [&'static str]) -> Self {
+        Self::new(name, ParamKind::Curve(columns), Default::Null)
     }
 
     /// One of `choices`, the first by default.
@@ -261,18 +276,23 @@ impl ParamSpec {
             ParamKind::IntChoice(choices) => format!("one of {}", list(choices)),
             ParamKind::Bool => "true or false".to_owned(),
             ParamKind::Text => "a string".to_owned(),
+            ParamKind::Grid => "a grid's name as a string".to_owned(),
             ParamKind::Choice(choices) => format!("one of {}", choices.join(", ")),
             ParamKind::Path | ParamKind::OutPath => "a path as a string".to_owned(),
             ParamKind::Vector(count) => format!("{count} numbers in brackets"),
             ParamKind::Rgb => "3 numbers in brackets or one for grey".to_owned(),
             ParamKind::Direction => "3 numbers in brackets, not all zero".to_owned(),
+            ParamKind::Curve(columns) => {
+                format!("1 or more rows [{}] with rising {}", columns.join(", "), columns[0])
+            }
             ParamKind::Record(params) => {
                 let names: Vec<&str> = params.iter().map(|param| param.name).collect();
                 format!("an object with {}", names.join(", "))
             }
         };
         if self.hard != Limits::NONE {
-            form += &format!(", {}", self.hard);
+            let of_which = if matches!(self.kind, ParamKind::Curve(_)) { "the others " } else { "" };
+            form += &format!(", {of_which}{}", self.hard);
         }
         if self.default == Default::Null {
             form += ", or null";
@@ -379,6 +399,10 @@ mod tests {
         assert_eq!(form(ParamSpec::int_choice("x", &[0, 8, 14])), "one of 0, 8, 14");
         assert_eq!(form(ParamSpec::path("x").or_null()), "a path as a string, or null");
         assert_eq!(form(ParamSpec::vector("x", &[30.0, 70.0])), "2 numbers in brackets");
+        let curve = ParamSpec::curve("x", &["value", "opacity"]).between(0.0, 1.0);
+        let rows = "1 or more rows [value, opacity] with rising value, the others 0..=1, or null";
+        assert_eq!(form(curve), rows);
+        assert_eq!(form(ParamSpec::grid("x", "density")), "a grid's name as a string");
         assert_eq!(form(GLOW), "an object with a, or null");
     }
 

@@ -103,8 +103,8 @@ impl Glow {
     pub(super) fn on(&self, run: &Run, lattice: &Lattice) -> Result<Emission, NodeError> {
         let gpu = run.gpu;
         let scale = run.params.f64("emission_scale");
-        let flame = padded(&self.flame, 0.0, |value| (scale * f64::from(value)) as f32);
-        let temperature = padded(&self.temperature, self.background, |value| value);
+        let flame = self.flame.padded(0.0, |value| (scale * f64::from(value)) as f32);
+        let temperature = self.temperature.padded(self.background, |value| value);
         let upload = |what: &str, grid: &Dense| -> Result<Arc<Texture>, NodeError> {
             Ok(Arc::new(gpu.texture3_from(
                 what,
@@ -150,23 +150,6 @@ impl Glow {
         run.finish(recorder)?;
         Ok(emission)
     }
-}
-
-/// A grid with a border of one voxel of what stands outside.
-fn padded(dense: &Dense, outside: f32, value: impl Fn(f32) -> f32) -> Dense {
-    let [nx, ny, nz] = dense.dims;
-    let dims = dense.dims.map(|n| n + 2);
-    let mut values = vec![value(outside); dims.iter().product()];
-    for z in 0..nz {
-        for y in 0..ny {
-            let from = nx * (y + ny * z);
-            let to = 1 + dims[0] * (y + 1 + dims[1] * (z + 1));
-            for x in 0..nx {
-                values[to + x] = value(dense.values[from + x]);
-            }
-        }
-    }
-    Dense { dims, values, world_from_index: dense.world_from_index * DMat4::from_translation(DVec3::NEG_ONE) }
 }
 
 /// Rows of the map from cells to texture coordinates of a grid.

@@ -29,7 +29,7 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[PortSpec::new("volume", PortType::Volume, "the grids")],
     outputs: &[PortSpec::new("medium", PortType::Medium, "the medium on its grid")],
     params: &[
-        ParamSpec::text("density", "density").doc("Name of the grid that holds the density."),
+        ParamSpec::grid("density", "density").doc("Name of the grid that holds the density."),
         ParamSpec::float("density_scale", 1.0)
             .unit("1/m per unit")
             .at_least(0.0)
@@ -77,8 +77,8 @@ static SPEC: NodeSpec = NodeSpec {
 };
 
 const EMISSION: &[ParamSpec] = &[
-    ParamSpec::text("temperature", "temperature").doc("Name of the grid of temperatures."),
-    ParamSpec::text("flame", "flame").doc("Name of the grid that says how much glows where."),
+    ParamSpec::grid("temperature", "temperature").doc("Name of the grid of temperatures."),
+    ParamSpec::grid("flame", "flame").doc("Name of the grid that says how much glows where."),
 ];
 
 /// A cell takes one sample a voxel along each axis, up to this many: a thread then reads 2 million voxels,
