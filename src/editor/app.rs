@@ -3,7 +3,6 @@
 mod files;
 mod safety;
 mod solving;
-mod thumbnails;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

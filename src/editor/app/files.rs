@@ -8,7 +8,6 @@ use egui_file_dialog::{DialogState, FileDialog, Filter};
 use super::App;
 use crate::editor::panels::unsaved::{self, Answer};
 use crate::editor::{Project, Selection, Statuses};
-use crate::graph::Document;
 use crate::template;
 
 /// What a dialog is for.
@@ -40,11 +39,11 @@ pub struct Files {
     dialog: Option<(FileDialog, Purpose)>,
     /// What waits for the answer whether to save.
     waiting: Option<Goal>,
-    /// The group that is to be written as a preset.
-    group: Option<Document>,
     /// Saving was asked for on the way to this goal.
     after_save: Option<Goal>,
     may_close: bool,
+    /// The group that is to be written as a preset.
+    preset: Option<crate::graph::Document>,
     /// The title that the window has.
     title: String,
 }
@@ -76,15 +75,6 @@ impl Files {
             .default_file_filter("OpenVDB");
         dialog.pick_file();
         self.dialog = Some((dialog, Purpose::Volume));
-    }
-
-    /// Asks where to write a group as a preset.
-    fn ask_preset(&mut self, folder: Option<&Path>, name: &str, group: Document) {
-        let name = name.rsplit('/').next().unwrap_or(name);
-        let mut dialog =
-            dialog("Save the group as a preset", folder).default_file_name(&format!("{name}.json"));
-        dialog.save_file();
-        (self.dialog, self.group) = (Some((dialog, Purpose::Preset)), Some(group));
     }
 
     /// Asks where to save.
@@ -192,6 +182,17 @@ impl App {
         self.player = Default::default();
     }
 
+    /// Asks where to write a group as a graph of its own.
+    pub(super) fn ask_preset(&mut self, name: &str) {
+        let Some(inside) = self.project.document().inside(name).cloned() else { return };
+        let mut dialog = dialog("Save the group as a preset", self.settings.folder.as_deref())
+            .default_file_name(&format!("{}.json", name.replace('/', "_")));
+        dialog.save_file();
+        let base = self.project.document().base.clone();
+        self.files.preset = Some(template::absolute(crate::graph::Document { base, ..inside }));
+        self.files.dialog = Some((dialog, Purpose::Preset));
+    }
+
     /// Saves to the graph's file, or asks for one; whether it was saved.
     pub(super) fn save(&mut self) -> bool {
         match self.project.file().map(Path::to_owned) {
@@ -248,29 +249,6 @@ impl App {
         }
     }
 
-    /// Asks where to write a group, `outer/inner`, as a preset of its own.
-    pub(super) fn ask_preset(&mut self, path: &str) {
-        let (outer, name) = path.rsplit_once('/').map_or((None, path), |(outer, name)| (Some(outer), name));
-        let document = self.project.document();
-        let holder = match outer {
-            Some(outer) => document.node(outer).and_then(|node| node.inside.as_deref()),
-            None => Some(document),
-        };
-        match holder.map(|holder| holder.preset_of(name)) {
-            Some(Ok(group)) => self.files.ask_preset(self.settings.folder.as_deref(), name, group),
-            Some(Err(error)) => self.toasts.complain(error),
-            None => self.toasts.complain(format!("the group '{path}' is no more")),
-        }
-    }
-
-    fn save_preset(&mut self, path: &Path) {
-        let Some(group) = self.files.group.take() else { return };
-        match Project::new(group).save_as(path) {
-            Ok(()) => self.toasts.say(format!("Saved {}", path.display())),
-            Err(error) => self.toasts.complain(error),
-        }
-    }
-
     fn dialogs(&mut self, ui: &Ui) {
         let Some((dialog, purpose)) = &mut self.files.dialog else { return };
         dialog.update(ui.ctx());
@@ -284,7 +262,14 @@ impl App {
                         self.go(goal);
                     }
                 }
-                Purpose::Preset => self.save_preset(&path),
+                Purpose::Preset => {
+                    let text =
+                        self.files.preset.take().map(|document| document.to_json()).unwrap_or_default();
+                    match crate::image::atomic::write(&path, text.as_bytes()) {
+                        Ok(()) => self.toasts.say(format!("Saved {}", path.display())),
+                        Err(error) => self.toasts.complain(error),
+                    }
+                }
                 Purpose::Graph | Purpose::Volume => self.open(&path),
             }
         } else if !matches!(dialog.state(), DialogState::Open) {

@@ -2,13 +2,14 @@
 
 use glam::DVec3;
 
-use super::{App, thumbnails};
+use super::App;
 use crate::editor::NodeState;
 use crate::editor::look::{self, Look};
-use crate::editor::viewport::Picture;
+use crate::editor::viewport::{self, Picture, Tone};
 use crate::editor::worker::{Ask, Reply, Solved};
 use crate::graph::{Document, Event, PortType, flatten};
 use crate::image::Image;
+use crate::image::tonemap::Curve;
 use crate::nodes::catalog;
 use crate::volume::Lattice;
 use crate::wire::Medium;
@@ -118,9 +119,7 @@ impl App {
                         self.player.known.insert(frame);
                     }
                 }
-                if let Some(small) = thumbnails::texture(context, &name, value.get::<Image>()) {
-                    self.thumbnails.insert(name.clone(), small);
-                }
+                self.small_picture(context, &name, value.get());
                 self.pictures.insert(name, Picture { value, level });
             } else if value.kind == PortType::Medium && level.is_full() {
                 // Its lattice alone: the medium's fields are the cache's to keep or drop.
@@ -130,6 +129,22 @@ impl App {
         if level.is_full() {
             for cost in costs.into_iter().filter(|cost| !cost.cached) {
                 self.statuses.entry(cost.name).or_default().gpu_ms = cost.gpu_ms;
+            }
+        }
+    }
+
+    /// The picture of a node, as small as the canvas shows it.
+    fn small_picture(&mut self, context: &egui::Context, name: &str, image: &Image) {
+        // What a tone_map gives is display light already.
+        let kind = self.project.document().node(name).map(|node| node.type_id.as_str());
+        let curve = if kind == Some("raymarch") { Curve::Aces } else { Curve::None };
+        let small = viewport::thumbnail(image, Tone { exposure_ev: 0.0, curve });
+        match self.thumbnails.get_mut(name) {
+            Some(texture) => texture.set(small, egui::TextureOptions::LINEAR),
+            None => {
+                let texture =
+                    context.load_texture(format!("small {name}"), small, egui::TextureOptions::LINEAR);
+                self.thumbnails.insert(name.to_owned(), texture);
             }
         }
     }

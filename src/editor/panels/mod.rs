@@ -44,11 +44,11 @@ impl Possible {
             Action::Undo => self.undo,
             Action::Redo => self.redo,
             Action::Play | Action::NextFrame | Action::PreviousFrame => self.frames,
-            Action::Save
+            Action::Canvas(_)
+            | Action::Save
             | Action::SaveAs
             | Action::Revert
             | Action::Versions
-            | Action::Canvas(_)
             | Action::FitPicture
             | Action::ActualSize
             | Action::FrameMedium

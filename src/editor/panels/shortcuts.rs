@@ -20,7 +20,7 @@ pub fn show(ui: &Ui, open: &mut bool) {
     let window = Window::new("Shortcuts").open(open).collapsible(false).resizable(false);
     window.anchor(Align2::CENTER_CENTER, [0.0, 0.0]).show(ui.ctx(), |ui| {
         ui.horizontal_top(|ui| {
-            for column in [&MENUS[..2], &MENUS[2..]] {
+            for column in [&MENUS[..2], &MENUS[2..3], &MENUS[3..]] {
                 ui.vertical(|ui| {
                     for menu in column {
                         ui.strong(*menu);

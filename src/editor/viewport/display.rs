@@ -56,6 +56,21 @@ pub fn develop(image: &Image, layer: &str, tone: Tone) -> Option<ColorImage> {
     Some(ColorImage::new([image.width, image.height], pixels))
 }
 
+/// The beauty at most [`SMALL`] pixels wide, by picking: it is seen for its content, not for its grain.
+pub fn thumbnail(image: &Image, tone: Tone) -> ColorImage {
+    let step = image.width.max(image.height).div_ceil(SMALL).max(1);
+    let [width, height] = [image.width.div_ceil(step), image.height.div_ceil(step)];
+    let picked = (0..width * height).flat_map(|idx| {
+        let [x, y] = [idx % width * step, idx / width * step];
+        image.pixels()[x + image.width * y]
+    });
+    let small = Image::new(width, height, picked.collect());
+    develop(&small, crate::image::BEAUTY, tone).expect("every image has a beauty")
+}
+
+/// Pixels of a thumbnail's longer side.
+const SMALL: usize = 160;
+
 /// Luminance of linear Rec. 709.
 pub fn luminance(rgb: [f32; 3]) -> f32 {
     0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]

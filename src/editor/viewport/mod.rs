@@ -28,7 +28,7 @@ use crate::graph::Value;
 use crate::image::{BEAUTY, Image};
 
 use display::Histogram;
-pub use display::Tone;
+pub use display::{Tone, thumbnail};
 use place::Place;
 
 /// A picture that came to be.
