@@ -223,7 +223,7 @@ impl App {
     pub(super) fn files(&mut self, ui: &Ui) {
         self.dialogs(ui);
         let dropped =
-            ui.ctx().input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_owned()));
+            ui.ctx().input(|input| input.raw.dropped_files.first().map(|file| file.path().to_owned()));
         if let Some(path) = dropped {
             self.open(&path);
         }

@@ -6,7 +6,9 @@
 //! number is refused. Tested by values and by the text of every error.
 
 /// Functions of one number; trigonometry in radians, `deg(30)` is 30 degrees in radians.
-const FUNCTIONS: &[(&str, fn(f64) -> f64)] = &[
+type Function = (&'static str, fn(f64) -> f64);
+
+const FUNCTIONS: &[Function] = &[
     ("sqrt", f64::sqrt),
     ("exp", f64::exp),
     ("ln", f64::ln),
