@@ -20,6 +20,7 @@ use super::player::Player;
 use super::presets::{self, Preset};
 use super::settings::{Settings, ThemeChoice};
 use super::viewport::{Picture, Scene, Viewport};
+use super::project::{Autosave, Recoverable, recoverable, state_folder};
 use super::{Project, Selection, Statuses, Worker, inspector, theme};
 use crate::camera::Camera;
 use crate::gpu::AdapterChoice;
@@ -44,6 +45,10 @@ pub struct App {
     toasts: Toasts,
     player: Player,
     files: Files,
+    /// Writes down what is not saved; `None` where there is no folder for it.
+    autosave: Option<Autosave>,
+    /// What was not saved when its program ended.
+    lost: Vec<Recoverable>,
     figures: Figures,
     settings: Settings,
     presets: Vec<Preset>,
@@ -80,6 +85,8 @@ impl App {
             toasts: Toasts::default(),
             player: Player::default(),
             files: Files::default(),
+            autosave: state_folder().map(|folder| Autosave::new(&folder)),
+            lost: state_folder().map(|folder| recoverable(&folder)).unwrap_or_default(),
             figures: Figures::default(),
             settings,
             presets: template::presets().map(|folder| presets::list(&folder)).unwrap_or_default(),
@@ -95,6 +102,7 @@ impl App {
         if let Some(file) = app.project.file().map(Path::to_owned) {
             app.settings.opened(&file);
         }
+        app.welcome();
         app
     }
 
@@ -266,6 +274,7 @@ impl eframe::App for App {
         let title = self.title();
         let asked = Panel::top("menu").show(ui, |ui| menu::show(ui, self.possible(), &title)).inner;
         asked.into_iter().for_each(|action| self.perform(&context, action));
+        self.recovery(ui);
         let retries = Panel::bottom("status").show(ui, |ui| status_bar::show(ui, &self.figures)).inner;
         if retries {
             self.perform(&context, Action::Retry);
@@ -290,6 +299,7 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.settings.save(Settings::file().as_deref());
+        self.end();
     }
 }
 

@@ -7,6 +7,7 @@ use egui_file_dialog::{DialogState, FileDialog, Filter};
 
 use super::App;
 use crate::editor::panels::unsaved::{self, Answer};
+use crate::editor::project::state_folder;
 use crate::editor::{Project, Selection, Statuses};
 use crate::template;
 
@@ -112,6 +113,7 @@ impl App {
     }
 
     fn go(&mut self, goal: Goal) {
+        self.end();
         match goal {
             Goal::Start => self.is_open = false,
             Goal::Quit => self.files.may_close = true,
@@ -170,6 +172,7 @@ impl App {
     fn show(&mut self, project: Project) {
         self.project = project;
         self.is_open = true;
+        self.welcome();
         self.selection = Selection::default();
         self.statuses = Statuses::default();
         self.canvas = Default::default();
@@ -190,6 +193,47 @@ impl App {
         self.files.dialog = Some((dialog, Purpose::Preset));
     }
 
+    /// What a graph that was opened has to say, and where its versions are kept.
+    pub(super) fn welcome(&mut self) {
+        if let Some(folder) = state_folder() {
+            self.project.keep_versions(&folder);
+        }
+        self.project.left_out().iter().for_each(|line| self.toasts.complain(format!("not understood: {line}")));
+    }
+
+    /// Offers what was not saved when its program ended.
+    pub(super) fn recovery(&mut self, ui: &mut Ui) {
+        let Some(lost) = self.lost.first() else { return };
+        let name = lost.file.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let name = name.unwrap_or("a graph without a file".to_owned());
+        let answer = egui::Panel::top("recovery").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.label(format!("Not saved when Tyndall ended: {name}"));
+                let recovers = ui.button("Recover").clicked();
+                (recovers, ui.button("Discard").clicked())
+            })
+        });
+        match answer.inner.inner {
+            (true, _) if !(self.is_open && self.project.is_unsaved()) => {
+                let lost = self.lost.remove(0);
+                if let Some(autosave) = &mut self.autosave {
+                    let project = autosave.recover(lost);
+                    self.show(project);
+                }
+            }
+            (true, _) => self.toasts.say("Save what is open first."),
+            (_, true) => self.lost.remove(0).discard(),
+            _ => {}
+        }
+    }
+
+    /// Nothing is open any more, by the user's will: what was written down in case of a kill may go.
+    pub(super) fn end(&mut self) {
+        if let Some(autosave) = &mut self.autosave {
+            autosave.forget();
+        }
+    }
+
     /// Saves to the graph's file, or asks for one; whether it was saved.
     pub(super) fn save(&mut self) -> bool {
         match self.project.file().map(Path::to_owned) {
@@ -207,6 +251,7 @@ impl App {
             Ok(()) => {
                 self.settings.opened(&path);
                 self.toasts.say(format!("Saved {}", path.display()));
+                self.project.take_warning().into_iter().for_each(|warning| self.toasts.complain(warning));
                 true
             }
             Err(error) => {
@@ -219,6 +264,11 @@ impl App {
     /// Dialogs, dropped files, and the closing of the window.
     pub(super) fn files(&mut self, ui: &Ui) {
         self.dialogs(ui);
+        if let (true, Some(autosave)) = (self.is_open, &mut self.autosave)
+            && let Some(wrong) = autosave.tick(&self.project, std::time::Instant::now())
+        {
+            self.toasts.complain(wrong);
+        }
         let dropped =
             ui.ctx().input(|input| input.raw.dropped_files.iter().next().map(|file| file.path().to_owned()));
         if let Some(path) = dropped {
