@@ -18,9 +18,9 @@ use super::panels::toasts::Toasts;
 use super::panels::{Possible, menu, shortcuts, timeline};
 use super::player::Player;
 use super::presets::{self, Preset};
+use super::project::{Autosave, Recoverable, recoverable, state_folder};
 use super::settings::{Settings, ThemeChoice};
 use super::viewport::{Picture, Scene, Viewport};
-use super::project::{Autosave, Recoverable, recoverable, state_folder};
 use super::{Project, Selection, Statuses, Worker, inspector, theme};
 use crate::camera::Camera;
 use crate::gpu::AdapterChoice;
@@ -214,13 +214,14 @@ impl App {
         }
         let width = self.settings.inspector_width;
         let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
-        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
+        let shown =
+            panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
         self.settings.inspector_width = shown.response.rect.width();
         let height = self.settings.canvas_height;
         let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
-        let shown = panel
-            .frame(Frame::new())
-            .show(ui, |ui| self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses, &self.thumbnails));
+        let shown = panel.frame(Frame::new()).show(ui, |ui| {
+            self.canvas.show(ui, &mut self.project, &mut self.selection, &self.statuses, &self.thumbnails)
+        });
         self.settings.canvas_height = shown.response.rect.height();
         for request in shown.inner {
             match request {

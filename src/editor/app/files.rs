@@ -198,13 +198,17 @@ impl App {
         if let Some(folder) = state_folder() {
             self.project.keep_versions(&folder);
         }
-        self.project.left_out().iter().for_each(|line| self.toasts.complain(format!("not understood: {line}")));
+        self.project
+            .left_out()
+            .iter()
+            .for_each(|line| self.toasts.complain(format!("not understood: {line}")));
     }
 
     /// Offers what was not saved when its program ended.
     pub(super) fn recovery(&mut self, ui: &mut Ui) {
         let Some(lost) = self.lost.first() else { return };
-        let name = lost.file.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
+        let name =
+            lost.file.as_deref().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
         let name = name.unwrap_or("a graph without a file".to_owned());
         let answer = egui::Panel::top("recovery").show(ui, |ui| {
             ui.horizontal(|ui| {
@@ -310,7 +314,8 @@ impl App {
                     }
                 }
                 Purpose::Preset => {
-                    let text = self.files.preset.take().map(|document| document.to_json()).unwrap_or_default();
+                    let text =
+                        self.files.preset.take().map(|document| document.to_json()).unwrap_or_default();
                     match crate::image::atomic::write(&path, text.as_bytes()) {
                         Ok(()) => self.toasts.say(format!("Saved {}", path.display())),
                         Err(error) => self.toasts.complain(error),

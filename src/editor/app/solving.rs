@@ -142,7 +142,8 @@ impl App {
         match self.thumbnails.get_mut(name) {
             Some(texture) => texture.set(small, egui::TextureOptions::LINEAR),
             None => {
-                let texture = context.load_texture(format!("small {name}"), small, egui::TextureOptions::LINEAR);
+                let texture =
+                    context.load_texture(format!("small {name}"), small, egui::TextureOptions::LINEAR);
                 self.thumbnails.insert(name.to_owned(), texture);
             }
         }

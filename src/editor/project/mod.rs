@@ -126,16 +126,6 @@ impl Project {
         !self.redo.is_empty()
     }
 
-    /// Whether a step can be taken back.
-    pub fn can_undo(&self) -> bool {
-        !self.undo.is_empty()
-    }
-
-    /// Whether a step can be done again.
-    pub fn can_redo(&self) -> bool {
-        !self.redo.is_empty()
-    }
-
     fn swap(&mut self, step: Step) -> Step {
         self.gesture = None;
         self.revision += 1;
