@@ -25,7 +25,6 @@ pub struct Theme {
     pub weak: Color32,
     pub shadow: Color32,
     pub accent: Color32,
-    pub good: Color32,
     pub stale: Color32,
     pub bad: Color32,
 }
@@ -40,7 +39,6 @@ static DARK: Theme = Theme {
     weak: hex(0xa0_a7_b2),
     shadow: Color32::from_black_alpha(110),
     accent: hex(0xff_b4_54),
-    good: hex(0x6c_c7_7b),
     stale: hex(0xe8_b3_39),
     bad: hex(0xf0_5d_5e),
 };
@@ -55,7 +53,6 @@ static LIGHT: Theme = Theme {
     weak: hex(0x59_61_6e),
     shadow: Color32::from_black_alpha(45),
     accent: hex(0xd9_6c_00),
-    good: hex(0x2e_8b_45),
     stale: hex(0xb0_7a_00),
     bad: hex(0xc9_2a_2a),
 };
