@@ -280,6 +280,7 @@ impl eframe::App for App {
         let title = self.title();
         let asked = Panel::top("menu").show(ui, |ui| menu::show(ui, self.possible(), &title)).inner;
         asked.into_iter().for_each(|action| self.perform(&context, action));
+        self.offer(ui);
         let retries = Panel::bottom("status").show(ui, |ui| status_bar::show(ui, &self.figures)).inner;
         if retries {
             self.perform(&context, Action::Retry);
@@ -305,6 +306,7 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.settings.save(Settings::file().as_deref());
+        self.give_up();
     }
 }
 

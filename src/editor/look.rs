@@ -7,7 +7,7 @@
 use std::collections::HashSet;
 
 use super::viewport::Tone;
-use crate::graph::{Document, End, PortType};
+use crate::graph::{Document, End, NodeSpec, ParamKind, PortType};
 use crate::image::tonemap::Curve;
 use crate::nodes::catalog;
 
@@ -103,8 +103,10 @@ pub fn tone(document: &Document, look: &Look, other: Tone) -> Tone {
 pub fn harmless(document: &Document) -> Vec<String> {
     let is_wired =
         |name: &str| document.wires.iter().any(|wire| wire.from.node == name || wire.to.node == name);
+    let writes = |spec: &NodeSpec| spec.params.iter().any(|param| matches!(param.kind, ParamKind::OutPath));
     let nodes = document.nodes.iter().filter(|(name, node)| {
-        catalog().find(&node.type_id).is_some_and(|spec| !spec.outputs.is_empty()) && is_wired(name)
+        let spec = catalog().find(&node.type_id);
+        spec.is_some_and(|spec| !spec.outputs.is_empty() && !writes(spec)) && is_wired(name)
     });
     nodes.map(|(name, _)| name.clone()).collect()
 }

@@ -214,8 +214,10 @@ impl Bench {
             return vec![Level::FULL];
         }
         let found = session.recall(&preview::at(&ask.document, small), Target::Nodes(&names));
-        let has_fields =
-            missing(&found, &ask.document).iter().all(|category| *category == Some(Category::Image));
+        // A camera costs nothing; what rests on its view, importance, is a category of its own.
+        let is_cheap =
+            |category: &Option<Category>| matches!(category, Some(Category::Image | Category::Camera));
+        let has_fields = missing(&found, &ask.document).iter().all(is_cheap);
         match (ask.is_drag, has_fields) {
             (true, true) => vec![small],
             (true, false) => vec![Level { share: self.coarse.share(), is_coarse: true }],

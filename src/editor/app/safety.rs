@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
 
-use egui::{Ui, Window};
+use egui::{Panel, Ui, Window};
 
 use super::App;
 use crate::editor::project::{Autosave, Recoverable, recoverable, versions};
@@ -47,7 +47,6 @@ impl App {
         if let Some(warning) = self.project.take_warning() {
             self.toasts.complain(warning);
         }
-        self.offer(ui);
         self.versions(ui);
     }
 
@@ -73,49 +72,43 @@ impl App {
     /// Goes back to the file, as a step of undo.
     pub(super) fn revert(&mut self) {
         match self.project.revert() {
-            Ok(true) => self.toasts.say("Back to the file; Undo takes it back".to_owned()),
-            Ok(false) => self.toasts.complain("This graph has no file yet".to_owned()),
+            Ok(true) => self.toasts.say("Back to the file; Undo takes it back"),
+            Ok(false) => self.toasts.complain("This graph has no file yet"),
             Err(error) => self.toasts.complain(error),
         }
     }
 
-    fn offer(&mut self, ui: &Ui) {
-        let Some(found) = self.safety.found.first().filter(|_| !self.is_open) else { return };
-        let name = found
-            .file
-            .as_ref()
-            .map_or("a graph without a file".to_owned(), |file| file.display().to_string());
+    /// Offers what was not saved when its program ended; drawn above everything else.
+    pub(super) fn offer(&mut self, ui: &mut Ui) {
+        let Some(found) = self.safety.found.first() else { return };
+        let name =
+            found.file.as_ref().map_or("a graph without a file".to_owned(), |file| file.display().to_string());
         let text = format!("Tyndall ended {} with changes in {name} that were not saved.", ago(found.time));
-        let mut answer = None;
-        Window::new("Recover")
-            .collapsible(false)
-            .resizable(false)
-            .anchor(egui::Align2::CENTER_TOP, [0.0, 48.0])
-            .show(ui.ctx(), |ui| {
+        let answer = Panel::top("recovery").show(ui, |ui| {
+            ui.horizontal(|ui| {
                 ui.label(text);
-                ui.add_space(8.0);
-                ui.horizontal(|ui| {
-                    for (label, value) in [("Recover it", true), ("Discard it", false)] {
-                        if ui.button(label).clicked() {
-                            answer = Some(value);
-                        }
-                    }
-                });
-            });
-        match (answer, &mut self.safety.autosave) {
-            (Some(true), Some(autosave)) => {
+                let recovers = ui.button("Recover").clicked();
+                (recovers, ui.button("Discard").clicked())
+            })
+            .inner
+        });
+        match (answer.inner, &mut self.safety.autosave) {
+            ((true, _), _) if self.is_open && self.project.is_unsaved() => {
+                self.toasts.say("Save what is open first");
+            }
+            ((true, _), Some(autosave)) => {
                 let project = autosave.recover(self.safety.found.remove(0));
                 self.show(project);
             }
-            (Some(_), _) => self.safety.found.remove(0).discard(),
-            (None, _) => {}
+            ((_, true), _) => self.safety.found.remove(0).discard(),
+            _ => {}
         }
     }
 
     fn versions(&mut self, ui: &Ui) {
         let (Some(state), Some(file)) = (&self.safety.state, self.project.file()) else {
             if std::mem::take(&mut self.safety.shows_versions) {
-                self.toasts.say("There are versions once the graph is saved".to_owned());
+                self.toasts.say("There are versions once the graph is saved");
             }
             return;
         };
