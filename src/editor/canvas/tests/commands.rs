@@ -13,7 +13,8 @@ fn nodes_are_copied_and_pasted_with_their_wires() {
     click(&mut harness, "node sun");
     click_with(&mut harness, "node split", Modifiers::SHIFT);
     let text = copied(&mut harness, Event::Copy).unwrap();
-    let part = Document::parse(&text, Path::new("")).unwrap();
+    let mut part = Document::default();
+    part.paste_text(crate::nodes::catalog(), &text, [0.0; 2]).unwrap();
     assert_eq!((part.nodes.len(), part.wires.len()), (2, 1));
     harness.hover_at(EMPTY);
     harness.step();
