@@ -217,7 +217,7 @@ fn choose(document: &mut Document, args: &Args) -> anyhow::Result<Vec<String>> {
         return Ok(vec![add_save(document, &name.clone(), kind)]);
     }
     let is_meant = |node: &Node| match &args.output {
-        Some(_) => node.type_id == save,
+        Some(_) => node.type_id == *save,
         None => is_save(node),
     };
     let saves = document.nodes.iter().filter(|(_, node)| is_meant(node));
