@@ -157,7 +157,7 @@ fn what_is_wrong_is_refused_as_by_render() {
     desk.write_graph("wire.json", "march.image ->", "sun.light ->");
     desk.run_blind(&["explain", "wire.json"]).refused(
         "wire.json: node 'save': cannot wire light into image; 'save.image' takes image, which raymarch.image, \
-         tone_map.image or save_image.image give\n",
+         slice.image, transfer_function.image, histogram.image, tone_map.image or save_image.image give\n",
     );
     if has_adapter() {
         desk.write_graph(

@@ -27,7 +27,7 @@ fn graphs_that_are_none() {
     refused(
         "wire.json",
         "wire.json: node 'save': cannot wire light into image; 'save.image' takes image, which raymarch.image, \
-         tone_map.image or save_image.image give\n",
+         slice.image, transfer_function.image, histogram.image, tone_map.image or save_image.image give\n",
     );
     desk.write_graph("cycle.json", "march.image -> save.image", "save.image -> save.image");
     refused("cycle.json", "cycle.json: node 'save': is in the cycle save -> save; remove a wire of it\n");
