@@ -81,8 +81,10 @@ impl App {
     /// Offers what was not saved when its program ended; drawn above everything else.
     pub(super) fn offer(&mut self, ui: &mut Ui) {
         let Some(found) = self.safety.found.first() else { return };
-        let name =
-            found.file.as_ref().map_or("a graph without a file".to_owned(), |file| file.display().to_string());
+        let name = found
+            .file
+            .as_ref()
+            .map_or("a graph without a file".to_owned(), |file| file.display().to_string());
         let text = format!("Tyndall ended {} with changes in {name} that were not saved.", ago(found.time));
         let answer = Panel::top("recovery").show(ui, |ui| {
             ui.horizontal(|ui| {

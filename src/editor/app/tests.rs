@@ -9,8 +9,6 @@ fn harness() -> Harness<'static, App> {
     let adapter = AdapterChoice::Named("no such adapter".to_owned());
     let mut app = App::new(&egui::Context::default(), None, &adapter, None);
     app.settings = Settings::default();
-    // What this user did not save is not the test's.
-    (app.autosave, app.lost) = (None, Vec::new());
     let draw = |ui: &mut Ui, app: &mut App| eframe::App::ui(app, ui, &mut eframe::Frame::_new_kittest());
     Harness::builder().with_size([1280.0, 800.0]).build_ui_state(draw, app)
 }

@@ -273,7 +273,7 @@ mod tests {
         assert_eq!(document.wires[1].to_string(), "sun.light -> spherical_propagation.lights");
         assert_eq!(document.layout["spherical_propagation"], [7.0, 8.0]);
         let into = Purpose::Connect(Port { end: "split.lights".parse().unwrap(), side: Side::Input });
-        assert_eq!(ids("", &into, &document), ["sun", "point_light"]);
+        assert_eq!(ids("", &into, &document), ["sun", "point_light", "bounce_lights"]);
         let (name, wired) = into.add(&mut document, catalog().find("sun").unwrap(), Pos2::ZERO);
         assert_eq!((name.as_str(), wired), ("sun_2", Ok(())));
         assert_eq!(document.wires[2].to_string(), "sun_2.light -> split.lights");
