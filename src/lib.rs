@@ -3,6 +3,7 @@
 #![warn(missing_docs)]
 
 pub mod camera;
+pub mod editor;
 pub mod geometry;
 pub mod gpu;
 pub mod graph;

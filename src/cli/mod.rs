@@ -11,6 +11,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use tyndall::gpu::AdapterChoice;
 use tyndall::graph::did_you_mean;
 
 mod compare;
@@ -27,10 +28,10 @@ mod stats;
 
 /// Light in smoke, fire, cloud and any other participating medium, as a graph of nodes.
 #[derive(Parser)]
-#[command(name = "tyndall", version, arg_required_else_help = true)]
+#[command(name = "tyndall", version)]
 struct Cli {
     #[command(subcommand)]
-    command: Command,
+    command: Option<Command>,
 }
 
 #[derive(Subcommand)]
@@ -48,16 +49,27 @@ enum Command {
 /// Wrong usage or input, or nothing could be done.
 const REFUSED: u8 = 2;
 
+/// The window, handed in by `main`, because it is no part of the command line.
+type OpenEditor = fn(Option<&Path>, &AdapterChoice) -> anyhow::Result<()>;
+
 /// Runs what the command line says.
-pub fn main() -> ExitCode {
+pub fn main(open_editor: OpenEditor) -> ExitCode {
+    let edit = |graph: Option<&Path>| {
+        open_editor(graph, &AdapterChoice::Auto)?;
+        Ok(ExitCode::SUCCESS)
+    };
     let result = match Cli::parse().command {
-        Command::Render(args) => render::run(&args),
-        Command::Explain(args) => explain::run(&args),
-        Command::Inspect(args) => inspect::run(&args),
-        Command::Compare(args) => compare::run(&args),
-        Command::Nodes(args) => nodes::run(&args),
-        Command::Doctor(args) => doctor::run(&args),
-        Command::Other(words) => Err(unknown(&words)),
+        None => edit(None),
+        Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Explain(args)) => explain::run(&args),
+        Some(Command::Inspect(args)) => inspect::run(&args),
+        Some(Command::Compare(args)) => compare::run(&args),
+        Some(Command::Nodes(args)) => nodes::run(&args),
+        Some(Command::Doctor(args)) => doctor::run(&args),
+        Some(Command::Other(words)) => match graph(&words) {
+            Some(path) => edit(Some(path)),
+            None => Err(unknown(&words)),
+        },
     };
     result.unwrap_or_else(|error| {
         match error.downcast_ref::<output::Lines>() {
@@ -68,14 +80,15 @@ pub fn main() -> ExitCode {
     })
 }
 
-/// For a first word that is no subcommand: most likely a graph to look at, or a slip of the finger.
+/// A first word that is no subcommand may be a graph to open.
+fn graph(words: &[OsString]) -> Option<&Path> {
+    let path = Path::new(words.first()?);
+    (path.extension().is_some_and(|ending| ending == "json") || path.exists()).then_some(path)
+}
+
+/// Or a slip of the finger.
 fn unknown(words: &[OsString]) -> anyhow::Error {
     let word = words.first().map(|word| word.to_string_lossy()).unwrap_or_default();
-    if word.ends_with(".json") || Path::new(&*word).exists() {
-        return anyhow::anyhow!(
-            "there is no editor yet; to render, type `tyndall render {word} -o picture.exr`"
-        );
-    }
     let command = Cli::command();
     let names: Vec<&str> =
         command.get_subcommands().map(clap::Command::get_name).filter(|name| *name != "help").collect();

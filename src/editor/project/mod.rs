@@ -1,0 +1,154 @@
+//! The graph that is open: its document, its undo, its file. No window: everything here is tested without.
+//!
+//! A change is a whole new document, and undo keeps the old one: graphs are small (a node is some hundred
+//! bytes), so a step costs less than the bookkeeping of a difference would. A gesture that goes on over
+//! many frames (a drag) is one step: edits with the same gesture are merged until it is another's turn.
+
+use std::path::{Path, PathBuf};
+
+use crate::graph::{Document, DocumentError};
+
+/// A graph and its history.
+#[derive(Debug, Default)]
+pub struct Project {
+    document: Document,
+    /// Where it is saved.
+    file: Option<PathBuf>,
+    undo: Vec<Step>,
+    redo: Vec<Step>,
+    /// Of the last edit, while it goes on.
+    gesture: Option<egui::Id>,
+    /// Counts changes of the document.
+    revision: u64,
+    saved: Option<Document>,
+}
+
+#[derive(Debug)]
+struct Step {
+    label: String,
+    /// The document on the other side of the step.
+    document: Document,
+}
+
+impl Project {
+    /// A new graph that has no file yet.
+    pub fn new(document: Document) -> Self {
+        Self { document, ..Self::default() }
+    }
+
+    /// The graph of a file.
+    ///
+    /// # Errors
+    /// Those of [`Document::load`].
+    pub fn load(path: &Path) -> Result<Self, DocumentError> {
+        let document = Document::load(path)?;
+        Ok(Self { saved: Some(document.clone()), document, file: Some(path.to_owned()), ..Self::default() })
+    }
+
+    /// The graph as it is now.
+    pub fn document(&self) -> &Document {
+        &self.document
+    }
+
+    /// Where it is saved.
+    pub fn file(&self) -> Option<&Path> {
+        self.file.as_deref()
+    }
+
+    /// Another number after each change.
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Whether it differs from its file.
+    pub fn is_unsaved(&self) -> bool {
+        self.saved.as_ref() != Some(&self.document)
+    }
+
+    /// Changes the graph, as one step of undo. What changes nothing is no step.
+    pub fn edit(&mut self, label: &str, change: impl FnOnce(&mut Document)) {
+        self.gesture = None;
+        self.apply(label, change);
+    }
+
+    /// Changes the graph as part of a gesture: all edits of one gesture, without another between, are one step.
+    pub fn edit_during(&mut self, gesture: egui::Id, label: &str, change: impl FnOnce(&mut Document)) {
+        if self.gesture == Some(gesture) {
+            change(&mut self.document);
+            self.revision += 1;
+        } else if self.apply(label, change) {
+            self.gesture = Some(gesture);
+        }
+    }
+
+    /// Ends the gesture that goes on: the next edit is a step of its own.
+    pub fn end_gesture(&mut self) {
+        self.gesture = None;
+    }
+
+    /// Takes the last step back and says which.
+    pub fn undo(&mut self) -> Option<String> {
+        let step = self.undo.pop()?;
+        let label = step.label.clone();
+        let back = self.swap(step);
+        self.redo.push(back);
+        Some(label)
+    }
+
+    /// Does the last step that was taken back again and says which.
+    pub fn redo(&mut self) -> Option<String> {
+        let step = self.redo.pop()?;
+        let label = step.label.clone();
+        let back = self.swap(step);
+        self.undo.push(back);
+        Some(label)
+    }
+
+    fn swap(&mut self, step: Step) -> Step {
+        self.gesture = None;
+        self.revision += 1;
+        Step { label: step.label, document: std::mem::replace(&mut self.document, step.document) }
+    }
+
+    /// Whether something changed.
+    fn apply(&mut self, label: &str, change: impl FnOnce(&mut Document)) -> bool {
+        let before = self.document.clone();
+        change(&mut self.document);
+        if self.document == before {
+            return false;
+        }
+        self.undo.push(Step { label: label.to_owned(), document: before });
+        self.redo.clear();
+        self.revision += 1;
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn say(text: &'static str) -> impl FnOnce(&mut Document) {
+        move |document| document.about = text.to_owned()
+    }
+
+    #[test]
+    fn a_gesture_is_one_step() {
+        let mut project = Project::default();
+        project.edit("first", say("a"));
+        for text in ["b", "c", "d"] {
+            project.edit_during(egui::Id::new("drag"), "drag", say(text));
+        }
+        project.edit("nothing", say("d"));
+        assert_eq!(project.undo().as_deref(), Some("drag"));
+        assert_eq!(project.document().about, "a");
+        assert_eq!(project.redo().as_deref(), Some("drag"));
+        assert_eq!(project.document().about, "d");
+        project.undo();
+        project.edit("other", say("e"));
+        assert_eq!(project.redo(), None);
+        assert_eq!((project.undo().as_deref(), project.undo().as_deref()), (Some("other"), Some("first")));
+        assert_eq!(project.undo(), None);
+        assert_eq!(project.document().about, "");
+    }
+}
