@@ -24,7 +24,7 @@ use crate::optics::directions::LineDirection;
 
 /// Surfaces are met this far from where they stand [cells of the finest grid], so that one that lies exactly on
 /// centers is on the same side of them for all lines, whatever the rounding of its f32 corners.
-const APART: DVec3 = DVec3::new(1.3e-3, 0.7e-3, 1.0e-3);
+pub(super) const APART: DVec3 = DVec3::new(1.3e-3, 0.7e-3, 1.0e-3);
 
 /// For each cell of the grid that has been halved so many times, a bit for each even entry of the directions: whether
 /// its segment to the next cell along that direction, which the opposite direction shares, meets a surface. `None`

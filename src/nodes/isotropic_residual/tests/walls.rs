@@ -3,6 +3,7 @@
 use glam::DVec4;
 
 use super::super::level;
+use super::super::walls::APART;
 use super::*;
 use crate::geometry::Mesh;
 use crate::graph::PortType;
@@ -76,7 +77,7 @@ fn residuals_among_surfaces_are_the_oracles() {
         };
         let (found, _) = swept(gpu, &scene, &triangles, (&beams, ambient), (name, lines));
         let level = Level::new(&scene.oracle(0), oracle_sources(&scene, 0, beams.get(), &taus));
-        let level = level.behind(triangles.clone());
+        let level = level.behind(triangles.iter().map(|corners| corners.map(|p| p + APART)).collect());
         let solved = solve(level, Options { quality, lines, scheme: Scheme::Diamond });
         assert!(solved.balance.into_surfaces > 0.05 * solved.balance.incoming(), "no wall says nothing");
         let expected = flat(&solved.state);
@@ -132,10 +133,9 @@ fn behind_a_wall_it_is_dark() {
     };
     let [.., dark] = sums(90.0, "reference");
     assert!(dark < 1e-4, "{dark}");
-    // The cascade starts from coarse grids between whose cells light is interpolated, wall or not.
+    // The cascade starts from coarse grids between whose cells light is interpolated, wall or not: 4.5e-3.
     let [.., leaks] = sums(90.0, "default");
-    eprintln!("behind a wall: {dark:.1e}, at default quality {leaks:.1e}");
-    assert!(leaks < 0.02, "{leaks}");
+    assert!(leaks < 0.01, "{leaks}");
     // Around an edge light comes in, and less the further from it.
     let [far, near, _] = sums(9.6, "reference");
     assert!(near > 5.0 * far && far > 1e-4, "{far} {near}");
