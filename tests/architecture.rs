@@ -284,7 +284,7 @@ fn a_wrong_arrow_is_seen() {
     assert!(wrong("nodes/raymarch/layers", "use super::super::sun;"));
     assert!(wrong("session", "const A: &str = \"//\"; use crate::cli;"));
     assert!(wrong("main", "use tyndall::session::Session;"));
-    assert!(wrong("editor/canvas", ""));
+    assert!(wrong("attic/canvas", ""));
     assert!(!wrong("graph/check", "// crate::gpu\nconst A: (&str, char) = (\"crate::gpu\", '\"');"));
     assert!(!wrong("graph/check", "const A: &str = r#\"\" use crate::gpu\"#; use crate::graph::Key;"));
     assert!(!wrong("nodes/raymarch", "use super::{NodeKind, walk}; use crate::gpu::Gpu;"));

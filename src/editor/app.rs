@@ -55,12 +55,12 @@ impl App {
         }
         self.asked = Some(self.project.revision());
         let document = self.project.document();
-        let givers = document.nodes.iter().filter_map(|(name, node)| {
+        let mut givers = document.nodes.iter().filter_map(|(name, node)| {
             let spec = catalog().find(&node.type_id)?;
             let image = spec.outputs.iter().find(|port| port.kind == PortType::Image)?;
             Some((name.clone(), image.name))
         });
-        if let Some((name, port)) = givers.last() {
+        if let Some((name, port)) = givers.next_back() {
             self.worker.solve(document, &name, port);
         }
     }

@@ -54,14 +54,14 @@ pub fn open(graph: Option<&Path>, adapter: &AdapterChoice) -> Result<(), EditorE
         Some(path) => Some(Project::load(path)?),
         None => None,
     };
-    // Asked before the window, whose own message would be obscure.
-    if adapters().is_empty() {
-        let remedy = "no Vulkan, Metal or DX12 driver was found; `tyndall doctor` says what to install";
-        return Err(EditorError::Window(remedy.to_owned()));
-    }
     if cfg!(target_os = "linux") && !has_display() {
         let remedy = "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set); to render without a \
                       window, type `tyndall render GRAPH -o picture.png`";
+        return Err(EditorError::Window(remedy.to_owned()));
+    }
+    // Asked before the window, whose own message would be obscure.
+    if adapters().is_empty() {
+        let remedy = "no Vulkan, Metal or DX12 driver was found; `tyndall doctor` says what to install";
         return Err(EditorError::Window(remedy.to_owned()));
     }
     let options = eframe::NativeOptions {

@@ -176,11 +176,22 @@ fn words_that_are_no_subcommand() {
         "error: there is no subcommand 'rendr'; did you mean 'render'? allowed are render, explain, inspect, compare, \
          nodes, doctor\n",
     );
-    desk.run_blind(&["g.json"])
-        .refused("error: there is no editor yet; to render, type `tyndall render g.json -o picture.exr`\n");
-    let ran = desk.run_blind(&[]);
-    assert_eq!(ran.code, Some(2));
-    assert!(ran.stderr.contains("Usage: tyndall <COMMAND>"), "{}", ran.stderr);
+}
+
+#[test]
+fn no_display() {
+    let desk = Desk::new();
+    // Elsewhere a window needs no variable.
+    if !cfg!(target_os = "linux") {
+        eprintln!("skipped: not Linux");
+        return;
+    }
+    let message = "error: there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set); to render without a window, \
+                   type `tyndall render GRAPH -o picture.png`\n";
+    desk.run_blind(&["g.json"]).refused(message);
+    desk.run_blind(&[]).refused(message);
+    let ran = desk.run_blind(&["none.json"]);
+    assert!(ran.stderr.starts_with("error: cannot read the graph 'none.json': "), "{}", ran.stderr);
 }
 
 #[test]

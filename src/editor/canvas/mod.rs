@@ -22,12 +22,17 @@ impl Canvas {
         selection: &mut Selection,
         statuses: &Statuses,
     ) -> Vec<Request> {
+        let mut requests = Vec::new();
         for name in project.document().nodes.keys() {
             let state = statuses.get(name).map(|status| &status.state);
-            if ui.selectable_label(selection.nodes.contains(name), format!("{name} {state:?}")).clicked() {
+            let label = ui.selectable_label(selection.nodes.contains(name), format!("{name} {state:?}"));
+            if label.clicked() {
                 selection.only(name);
             }
+            if label.double_clicked() {
+                requests.push(Request::Show(name.clone()));
+            }
         }
-        Vec::new()
+        requests
     }
 }
