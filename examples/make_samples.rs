@@ -1,4 +1,4 @@
-//! Makes the samples in `data/`: a cumulus, plumes, a fire and its hearth, an engine on its track, and skies.
+//! Makes the samples in `data/`: a cumulus, plumes, a fire, an engine on its track, and skies.
 //!
 //! `cargo run --release --example make_samples [FOLDER [NAME…]]` writes into `data/` unless told otherwise, all
 //! samples or those of these names. The cloud is the one of [`tyndall::volume::shapes`]; what the others are
@@ -6,8 +6,6 @@
 
 #[path = "make_samples/fire.rs"]
 mod fire;
-#[path = "make_samples/hearth.rs"]
-mod hearth;
 #[path = "make_samples/locomotive.rs"]
 mod locomotive;
 #[path = "make_samples/park.rs"]
@@ -84,11 +82,6 @@ fn main() -> anyhow::Result<()> {
         let (lanterns, trees) = (park::lanterns(), park::trees());
         let meshes = [("lanterns", &lanterns), ("trees", &trees), ("lawn", &lawn), ("path", &path)];
         write_meshes(&folder.join("park"), &meshes)?;
-    }
-    if wants("hearth") {
-        let meshes =
-            [("ground", &hearth::ground()), ("stones", &hearth::stones()), ("logs", &hearth::logs())];
-        write_meshes(&folder.join("hearth"), &meshes)?;
     }
     if wants("wall") {
         write_meshes(folder, &[("wall", &park::wall())])?;
