@@ -3,17 +3,20 @@
 //! At points of surfaces (`points.rs`) the irradiance E is known on both sides, between them it is linear, and
 //! surfaces send back L = reflectance E / pi. E is what beams bring, past surfaces and through the medium, and
 //! a march of 16 directions through what the medium scatters, to other surfaces and ambient light. From cells
-//! near matter 32 rays look for surfaces: their (phi, F) is the first-collision source Q0 += sigma_s* phi, Q1 += sigma_s* g* F of another solve, and is
-//! added to the field that the camera reads. Twice: what comes back once more lights surfaces again.
+//! near matter 32 rays look for surfaces: their (phi, F) is the first-collision source Q0 += sigma_s* phi,
+//! Q1 += sigma_s* g* F of another solve, and is added to the field that the camera reads. Twice: what comes back
+//! once more lights surfaces again.
 //! Ambient light enters the solver past surfaces: what they hide of it is taken off the same rays, so that
 //! (phi, F) straight from surfaces may be negative. With the ambient light that is in the solver's it is not.
 //! In the end E is computed once more, from 64 directions and without narrow beams: what a camera finds on
 //! surfaces that it sees.
 //!
-//! What the medium has scattered ends at surfaces inside of it (`walls.rs`).
-//! Limits: light on surfaces is as coarse
-//! as their points (two cells apart or more, 2^14 on all surfaces), and is gathered on at most 2^16 cells. Tested by the closed
-//! forms of planes in a void and in a thin medium, and by what a closed ball must hold.
+//! What the medium has scattered ends at surfaces inside of it (`walls.rs`). All solves but the last are rough: of
+//! a cascade the two finest grids get what comes from the third.
+//!
+//! Limits: light on surfaces is as coarse as their points (two cells apart or more, 2^14 on all surfaces), and is
+//! gathered on at most 2^16 cells. Tested by the closed forms of planes in a void and in a thin medium, and by what
+//! a closed ball must hold.
 
 use std::sync::Arc;
 

@@ -13,8 +13,8 @@
 //! Σ t c + leaving. phi = Σ w c, F = Σ w c ω. Lines start at the boundary with the ambient
 //! radiance. A segment to the next cell that meets a surface ends there, into the surface, and starts anew with
 //! nothing but the ambient light that neither scattering nor absorption has met: what surfaces hide of that and
-//! what they send back are sources. Tested by that balance to rounding over the extremes of media, by closed forms and by
-//! symmetry.
+//! what they send back are sources. Tested by that balance to rounding over the extremes of media, by closed forms
+//! and by symmetry.
 
 use glam::{DVec3, DVec4, IVec3};
 use rayon::prelude::*;
