@@ -78,10 +78,10 @@ pub(super) fn solve(
     let rough = effort.rough();
     let unseen = scene.scattered(&scene.of_beams, &scene.settle(&scene.of_beams, rough)?)?;
     let unlit = scene.points.irradiances(run.gpu)?;
-    let from_beams = scene.from_beams(&few::few(&beams.beams), false)?;
+    let from_beams = scene.light_of_beams(&few::few(&beams.beams), false)?;
     let glance = scene.irradiances(&unseen, &unlit, &from_beams, Use::Glance)?;
     scene.points = scene.points.settled(run.gpu, &glance)?;
-    let from_beams = scene.from_beams(&beams.beams, true)?;
+    let from_beams = scene.light_of_beams(&beams.beams, true)?;
     let [most, most_before] = LIT_CELLS;
     let before = scene.bounce(&unseen, &unlit, &from_beams, most_before, rough)?;
     let last = scene.bounce(&before.scattered, &before.on_surfaces, &from_beams, most, effort)?;
@@ -190,7 +190,7 @@ impl Scene<'_> {
 
     /// What beams bring to all points, past surfaces and, if `has_depths`, dimmed by the medium: of narrow ones on
     /// both sides, and then of the others.
-    fn from_beams(&self, beams: &[Beam], has_depths: bool) -> Result<Buffer, NodeError> {
+    fn light_of_beams(&self, beams: &[Beam], has_depths: bool) -> Result<Buffer, NodeError> {
         let gpu = self.run.gpu;
         let n_points = self.points.n_points;
         let found = gpu.buffer("light of beams on surfaces", 64 * n_points as u64, REMEDY)?;
