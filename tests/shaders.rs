@@ -34,6 +34,10 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("beams", SWITCH),
     ("lobes", SWITCH),
     ("skips", SWITCH),
+    ("skips_dark", SWITCH),
+    ("glows", SWITCH),
+    ("depths", SWITCH),
+    ("walls", SWITCH),
     ("directions", &["4", "16", "64"]),
     ("least_anisotropy", &["0.1"]),
     ("least_share", &["1e-5"]),
@@ -74,7 +78,8 @@ fn with_imports(name: &str) -> String {
     let mut text = String::new();
     let mut to_read = vec![name.to_owned()];
     while let Some(name) = to_read.pop() {
-        let file = shader_text(&name.replace("{channels}", "1").replace("{pack}", "1")).unwrap();
+        let name = name.replace("{channels}", "1").replace("{pack}", "1").replace("{walls}", "true");
+        let file = shader_text(&name).unwrap();
         let imports = file.lines().filter_map(|line| line.strip_prefix("#import "));
         to_read.extend(imports.map(|import| import.trim().trim_matches('"').to_owned()));
         text += &file;

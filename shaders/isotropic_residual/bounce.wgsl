@@ -13,4 +13,6 @@ struct BounceParams {
     // Edge of the cells that surfaces light, in cells of the level.
     coarser: u32,
     pad: u32,
+    // A ball around most of the flame: center in index space, and radius [cells].
+    flame: vec4f,
 }

@@ -3,18 +3,23 @@
 // covered by the threads of one face (DESIGN 6.4, "line-exact").
 
 #import "isotropic_residual/batch.wgsl"
+#import "isotropic_residual/walls_{walls}.wgsl"
 #import "lib/lobe.wgsl"
 
 @group(1) @binding(0) var<storage, read> lobes: array<vec4u>;
 @group(2) @binding(0) var<storage, read_write> mean_radiance: array<f32>;
 @group(2) @binding(1) var<storage, read_write> line_sums: array<vec2f>;
 
+// Whether surfaces stand between cells.
+const HAS_WALLS: bool = {walls};
+
 @compute @workgroup_size(8, 8, 1)
 fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
     let level = batch.level;
     let pair = batch.first + id.z;
     let c = pair / level.n_directions;
-    let direction = batch.directions[pair % level.n_directions];
+    let direction_idx = pair % level.n_directions;
+    let direction = batch.directions[direction_idx];
     let e = direction.e;
     let n = vec3i(level.dims);
 
@@ -58,6 +63,8 @@ fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
 
     // No branches below: software drivers pay for each by a round trip of every variable through memory.
     var radiance = inflow;
+    // What of it is ambient light yet. Walls let that pass: what they hide of it is known from rays.
+    var ambient = inflow;
     var leak = 0.0;
     var absorbed = 0.0;
     for (var step = 0; step < n_steps; step += 1) {
@@ -74,9 +81,10 @@ fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
         let dry = (q + 0.5 * a * radiance) / max(t, 1e-30);
         let is_void = t <= 0.0;
         let mean = select(select(diamond, dry, ahead < 0.0), radiance + 0.5 * q * s, is_void);
-        let out = select(max(ahead, 0.0), radiance + q * s, is_void);
+        var out = select(max(ahead, 0.0), radiance + q * s, is_void);
         absorbed += t * mean;
         mean_radiance[mean_base + cell] = mean;
+        let here = cell;
 
         u += abs(steps.x);
         v += abs(steps.y);
@@ -86,6 +94,15 @@ fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
         v -= select(0, n_v, wraps_v);
         cell += stride - select(0, back_u, wraps_u) - select(0, back_v, wraps_v);
         let side = wraps_u || wraps_v;
+        if HAS_WALLS {
+            ambient *= max(0.0, (a - t) / (a + t));
+            // Opposite directions share a segment. Of the last one the line's end is all that is left.
+            let is_reversed = direction_idx % 2u == 1u && step + 1 < n_steps;
+            let ends = is_walled(select(here, cell, is_reversed), direction_idx / 2u);
+            leak += select(0.0, out - ambient, ends);
+            out = select(out, ambient, ends);
+            ambient = select(ambient, inflow, side);
+        }
         leak += select(0.0, out, side);
         radiance = select(out, inflow, side);
     }

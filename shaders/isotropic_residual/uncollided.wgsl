@@ -41,6 +41,7 @@ fn isotropic_residual_uncollided(@builtin(global_invocation_id) id: vec3u) {
         return;
     }
     let p = (vec3f(id) + 0.5) * f32(params.coarser) - 0.5;
+    let has_ambient = level.channels[0].inflow + level.channels[1].inflow + level.channels[2].inflow > 0.0;
     var sums: array<vec4f, 3>;
     // What is not near matter nothing reads: by linear interpolation a cell reaches its neighbors.
     let n_directions = select(0u, N_DIRECTIONS, is_near_matter(p, f32(params.coarser)));
@@ -53,8 +54,11 @@ fn isotropic_residual_uncollided(@builtin(global_invocation_id) id: vec3u) {
         if hit.triangle != NO_SURFACE {
             let at = p + hit.t * towards;
             let radiance = returned_radiance(hit.triangle, at, towards);
-            let tau = walk(sigma_t, linear_clamp, params.shape, level.cell_m, p, towards, hit.t);
-            let beyond = walk(sigma_t, linear_clamp, params.shape, level.cell_m, at, towards, 1e30);
+            let tau = walk_past(sigma_t, linear_clamp, blocks, params.shape, level.cell_m, p, towards, hit.t);
+            var beyond = 0.0;
+            if has_ambient {
+                beyond = walk_past(sigma_t, linear_clamp, blocks, params.shape, level.cell_m, at, towards, 1e30);
+            }
             for (var c = 0u; c < level.n_channels; c += 1u) {
                 let channel = level.channels[c];
                 let hidden = channel.inflow * exp(-channel.k * beyond);

@@ -11,6 +11,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::JoinHandle;
 use std::time::Instant;
 
 use super::preview::{self, Level, Pace};
@@ -84,7 +85,9 @@ struct Request {
 
 /// The window's end of the thread.
 pub struct Worker {
-    requests: Sender<Request>,
+    /// Dropped to end the thread.
+    requests: Option<Sender<Request>>,
+    thread: Option<JoinHandle<()>>,
     replies: Receiver<(u64, Reply)>,
     number: u64,
     cancel: CancelToken,
@@ -97,7 +100,7 @@ impl Worker {
         let (requests, to_do) = channel::<Request>();
         let (done, replies) = channel();
         let adapter = adapter.clone();
-        std::thread::spawn(move || {
+        let thread = std::thread::spawn(move || {
             let tell = |number, reply| {
                 // A window that is gone needs no replies.
                 let _ = done.send((number, reply));
@@ -105,7 +108,8 @@ impl Worker {
             };
             serve(&adapter, &to_do, &tell);
         });
-        Self { requests, replies, number: 0, cancel: CancelToken::new(), is_drag: false }
+        let (requests, thread) = (Some(requests), Some(thread));
+        Self { requests, thread, replies, number: 0, cancel: CancelToken::new(), is_drag: false }
     }
 
     /// Asks, and gives the number of the request. What was asked before is cancelled, but for a picture of
@@ -118,13 +122,24 @@ impl Worker {
         self.is_drag = ask.is_drag;
         self.number += 1;
         // The thread ends with the window alone.
-        let _ = self.requests.send(Request { number: self.number, ask, cancel: self.cancel.clone() });
+        let request = Request { number: self.number, ask, cancel: self.cancel.clone() };
+        let _ = self.requests.as_ref().map(|requests| requests.send(request));
         self.number
     }
 
     /// What came since the last call, each with the number of its request.
     pub fn replies(&self) -> Vec<(u64, Reply)> {
         self.replies.try_iter().collect()
+    }
+}
+
+impl Drop for Worker {
+    /// Waits for the stage that runs: a program that ends while its thread opens a driver is aborted by it.
+    fn drop(&mut self) {
+        self.cancel.cancel();
+        self.requests = None;
+        // A panic of the thread was told when it happened.
+        let _ = self.thread.take().map(JoinHandle::join);
     }
 }
 

@@ -296,7 +296,15 @@ impl Beams {
     /// # Errors
     /// [`GpuError`] where the device has no room.
     pub fn list(&self, gpu: &Gpu, channels: &Channels) -> Result<Buffer, GpuError> {
-        let texels: Vec<_> = self.beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
+        Self::list_of(gpu, &self.beams, channels)
+    }
+
+    /// The same of any beams.
+    ///
+    /// # Errors
+    /// [`GpuError`] where the device has no room.
+    pub fn list_of(gpu: &Gpu, beams: &[Beam], channels: &Channels) -> Result<Buffer, GpuError> {
+        let texels: Vec<_> = beams.iter().map(|beam| beam.texel(channels.project(beam.power))).collect();
         let texels = if texels.is_empty() { vec![bytemuck::Zeroable::zeroed()] } else { texels };
         gpu.buffer_from("beams", &texels, "lower light_decomposition.count")
     }

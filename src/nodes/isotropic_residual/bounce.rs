@@ -3,16 +3,20 @@
 //! At points of surfaces (`points.rs`) the irradiance E is known on both sides, between them it is linear, and
 //! surfaces send back L = reflectance E / pi. E is what beams bring, past surfaces and through the medium, and
 //! a march of 16 directions through what the medium scatters, to other surfaces and ambient light. From cells
-//! near matter 32 rays look for surfaces: their (phi, F) is the first-collision source Q0 += sigma_s* phi, Q1 += sigma_s* g* F of another solve, and is
-//! added to the field that the camera reads. Twice: what comes back once more lights surfaces again.
+//! near matter 32 rays look for surfaces: their (phi, F) is the first-collision source Q0 += sigma_s* phi,
+//! Q1 += sigma_s* g* F of another solve, and is added to the field that the camera reads. Twice: what comes back
+//! once more lights surfaces again.
 //! Ambient light enters the solver past surfaces: what they hide of it is taken off the same rays, so that
 //! (phi, F) straight from surfaces may be negative. With the ambient light that is in the solver's it is not.
 //! In the end E is computed once more, from 64 directions and without narrow beams: what a camera finds on
 //! surfaces that it sees.
 //!
-//! Limits: what the medium has scattered passes through surfaces inside of it; light on surfaces is as coarse
-//! as their points (two cells apart or more, 2^14 on all surfaces), and is gathered on at most 2^16 cells. Tested by the closed
-//! forms of planes in a void and in a thin medium, and by what a closed ball must hold.
+//! What the medium has scattered ends at surfaces inside of it (`walls.rs`). All solves but the last are rough: of
+//! a cascade the two finest grids get what comes from the third.
+//!
+//! Limits: light on surfaces is as coarse as their points (two cells apart or more, 2^14 on all surfaces), and is
+//! gathered on at most 2^16 cells. Tested by the closed forms of planes in a void and in a thin medium, and by what
+//! a closed ball must hold.
 
 use std::sync::Arc;
 
@@ -23,8 +27,10 @@ use super::{Effort, level, solver};
 use crate::gpu::{Bind, Buffer, Format, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
-use crate::wire::{Beams, Channels, Medium, Residual, ShapeTexel, SurfaceLight, Surfaces};
+use crate::wire::{Beam, Beams, Channels, Medium, Residual, ShapeTexel, SurfaceLight, Surfaces};
 
+mod few;
+mod flame;
 mod points;
 
 use points::Points;
@@ -38,6 +44,7 @@ mirror! {
         n_points: u32,
         coarser: u32,
         pad: u32,
+        flame: [f32; 4],
     }
 }
 
@@ -57,26 +64,28 @@ pub(super) fn solve(
     channels: Channels,
 ) -> Result<Residual, NodeError> {
     let points = Points::new(run.gpu, medium.lattice.occupied, surfaces)?;
-    let list = beams.list(run.gpu, &channels)?;
     let params = BounceParams {
         level: problem.level(medium.lattice.dims, medium.lattice.cell_m),
         shape: medium.shape(),
-        n_beams: beams.beams.len() as u32,
+        n_beams: 0,
         n_points: 0,
         coarser: 1,
         pad: 0,
+        flame: flame::ball(run, medium)?.to_array(),
     };
     let of_beams = super::sources::sources(run, medium, beams, &channels, problem)?;
-    let mut scene = Scene { run, medium, beams, problem, channels, list, params, points, of_beams };
+    let mut scene = Scene { run, medium, beams, problem, channels, params, points, of_beams };
     let rough = effort.rough();
     let unseen = scene.scattered(&scene.of_beams, &scene.settle(&scene.of_beams, rough)?)?;
     let unlit = scene.points.irradiances(run.gpu)?;
-    let glance = scene.irradiances(&unseen, &unlit, Use::Glance)?;
+    let from_beams = scene.light_of_beams(&few::few(&beams.beams), false)?;
+    let glance = scene.irradiances(&unseen, &unlit, &from_beams, Use::Glance)?;
     scene.points = scene.points.settled(run.gpu, &glance)?;
+    let from_beams = scene.light_of_beams(&beams.beams, true)?;
     let [most, most_before] = LIT_CELLS;
-    let before = scene.bounce(&unseen, &unlit, most_before, rough)?;
-    let last = scene.bounce(&before.scattered, &before.on_surfaces, most, effort)?;
-    let irradiances = scene.irradiances(&last.scattered, &last.on_surfaces, Use::Camera)?;
+    let before = scene.bounce(&unseen, &unlit, &from_beams, most_before, rough)?;
+    let last = scene.bounce(&before.scattered, &before.on_surfaces, &from_beams, most, effort)?;
+    let irradiances = scene.irradiances(&last.scattered, &last.on_surfaces, &from_beams, Use::Camera)?;
     let moments = Arc::new(scene.with_uncollided(&last)?);
     let surface_light = SurfaceLight {
         irradiances,
@@ -117,7 +126,6 @@ struct Scene<'a> {
     beams: &'a Beams,
     problem: &'a Problem,
     channels: Channels,
-    list: Buffer,
     params: BounceParams,
     points: Points,
     of_beams: Sources,
@@ -146,11 +154,12 @@ impl Scene<'_> {
         &self,
         scattered: &Texture,
         on_surfaces: &Buffer,
+        from_beams: &Buffer,
         most_lit: usize,
         effort: Effort,
     ) -> Result<Bounced, NodeError> {
         let gpu = self.run.gpu;
-        let on_surfaces = self.irradiances(scattered, on_surfaces, Use::Bounce)?;
+        let on_surfaces = self.irradiances(scattered, on_surfaces, from_beams, Use::Bounce)?;
         let dims = self.medium.lattice.dims;
         let coarser = coarser(dims, most_lit);
         let params = BounceParams { coarser: coarser as u32, ..self.params };
@@ -179,11 +188,40 @@ impl Scene<'_> {
         Ok(Bounced { on_surfaces, uncollided, coarser: params.coarser, scattered, residual })
     }
 
+    /// What beams bring to all points, past surfaces and, if `has_depths`, dimmed by the medium: of narrow ones on
+    /// both sides, and then of the others.
+    fn light_of_beams(&self, beams: &[Beam], has_depths: bool) -> Result<Buffer, NodeError> {
+        let gpu = self.run.gpu;
+        let n_points = self.points.n_points;
+        let found = gpu.buffer("light of beams on surfaces", 64 * n_points as u64, REMEDY)?;
+        let list = Beams::list_of(gpu, beams, &self.channels)?;
+        let sampler = gpu.linear_sampler();
+        let [nodes, triangles] = self.points.surfaces.binds();
+        let inputs = [
+            Bind::Texture(&self.medium.sigma_t),
+            Bind::Sampler(&sampler),
+            Bind::Texture(&self.medium.blocks.texture),
+            nodes,
+            triangles,
+            Bind::Buffer(&self.points.list),
+            Bind::Buffer(&list),
+        ];
+        let choices = [("pack", self.beams.pack().to_string()), ("depths", has_depths.to_string())];
+        let stage = gpu.stage("isotropic_residual/surface_beams", &choices)?;
+        let params = BounceParams { n_beams: beams.len() as u32, n_points: n_points as u32, ..self.params };
+        let mut recorder = gpu.recorder("light on surfaces");
+        let bound = stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&found)]);
+        recorder.dispatch(&bound, [n_points.min(ROW), n_points.div_ceil(ROW), 1]);
+        self.run.finish(recorder)?;
+        Ok(found)
+    }
+
     /// E on both sides of all points, by what the medium scatters and by what arrived on surfaces before.
     fn irradiances(
         &self,
         scattered: &Texture,
         on_surfaces: &Buffer,
+        from_beams: &Buffer,
         what_for: Use,
     ) -> Result<Buffer, NodeError> {
         let gpu = self.run.gpu;
@@ -201,12 +239,12 @@ impl Scene<'_> {
             Bind::Buffer(&points.list),
             Bind::Buffer(&self.points.corners),
             Bind::Buffer(on_surfaces),
-            Bind::Buffer(&self.list),
+            Bind::Buffer(from_beams),
         ];
-        let pack = ("pack", self.beams.pack().to_string());
         let choices = [
-            pack,
             ("narrow", (what_for != Use::Camera).to_string()),
+            ("glows", self.medium.emission.is_some().to_string()),
+            ("skips_dark", (what_for == Use::Camera).to_string()),
             ("directions", what_for.n_directions().to_string()),
             ("channels", self.channels.count.to_string()),
         ];

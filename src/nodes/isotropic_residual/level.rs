@@ -4,7 +4,9 @@ use crate::gpu::{Bind, Bound, Buffer, Format, Gpu, GpuError, Recorder, Stage, Te
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::directions::{LineDirection, LineSet};
-use crate::wire::{Channels, Medium};
+use crate::wire::{Channels, Medium, Surfaces};
+
+use super::walls::walls;
 
 pub(super) const REMEDY: &str = "lower medium.max_resolution or medium.max_cells";
 
@@ -72,6 +74,8 @@ pub(super) struct Problem {
     has_lobes: bool,
     g_star: f64,
     channels: [ChannelTexel; 3],
+    /// Which segments end at surfaces (`walls.rs`), for each grid, finest first; none where no surface is inside.
+    walls: Vec<Option<Buffer>>,
 }
 
 impl Problem {
@@ -99,7 +103,28 @@ impl Problem {
             has_lobes,
             g_star,
             channels: texels,
+            walls: Vec::new(),
         }
+    }
+
+    /// The same with these surfaces between the cells of grids of these sizes, finest first.
+    pub(super) fn behind(
+        self,
+        gpu: &Gpu,
+        surfaces: &Surfaces,
+        grids: &[[usize; 3]],
+    ) -> Result<Self, GpuError> {
+        let wall = |(n_halvings, dims): (usize, &[usize; 3])| {
+            let bits = walls(&surfaces.corners, *dims, n_halvings, &self.directions);
+            bits.map(|bits| gpu.buffer_from("surfaces between cells", &bits, REMEDY)).transpose()
+        };
+        let walls = grids.iter().enumerate().map(wall).collect::<Result<_, GpuError>>()?;
+        Ok(Self { walls, ..self })
+    }
+
+    /// Which segments of a grid end at surfaces.
+    pub(super) fn walls_of(&self, grid: usize) -> Option<&Buffer> {
+        self.walls.get(grid)?.as_ref()
     }
 
     /// Shader parameters of a level.
@@ -260,6 +285,7 @@ impl Level {
         gpu: &Gpu,
         problem: &Problem,
         scratch: &Scratch,
+        grid: usize,
         cell_m: f64,
         [sigma_t, sources]: [&Texture; 2],
         source_sums: &Buffer,
@@ -278,7 +304,8 @@ impl Level {
             .map(|_| gpu.buffer("lobes", lobe_bytes, REMEDY))
             .collect::<Result<Vec<Buffer>, GpuError>>()?;
 
-        let choices = [("lobes", problem.has_lobes.to_string())];
+        let walls = problem.walls_of(grid);
+        let choices = [("lobes", problem.has_lobes.to_string()), ("walls", walls.is_some().to_string())];
         let [lobe, sweep, partial, to_lobes, to_moments, balance_stage] =
             ["lobe", "sweep", "gather_partial", "gather_lobes", "gather_moments", "balance"]
                 .map(|stage| gpu.stage(&format!("isotropic_residual/{stage}"), &choices));
@@ -326,13 +353,14 @@ impl Level {
                     ]
                 };
                 let begins = batch.first % group_pairs == 0;
+                let swept: Vec<Bind> = [lobes()].into_iter().chain(walls.map(Bind::Buffer)).collect();
                 let outputs = [Bind::Buffer(&scratch.mean_radiance), Bind::Buffer(&line_sums)];
                 Step {
                     start: begins.then(|| {
                         let [a, b] = fields();
                         bind(&lobe, &[a, b, Bind::Texture(&moments)], &[lobes()])
                     }),
-                    sweep: bind(&sweep, &[lobes()], &outputs),
+                    sweep: bind(&sweep, &swept, &outputs),
                     threads: [threads[0], threads[1], batch.n_pairs],
                     gather,
                     completes: to_come == 1,

@@ -32,6 +32,7 @@ mod radial;
 mod solver;
 mod sources;
 mod thick;
+mod walls;
 
 pub(super) const KIND: NodeKind =
     NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Foretold(foretell) };
@@ -43,7 +44,7 @@ static SPEC: NodeSpec = NodeSpec {
     purpose: "Multiple scattering: light that has lost its direction, as one lobe a cell.",
     doc: "Solves for all light that has been scattered out of the beams or is emitted, by sweeps along lines of the grid from coarse to fine. \
           One channel where the medium is grey and all light has one color, three otherwise. Surfaces are lit by beams, by the \
-          medium and by each other, hide ambient light, and send light back, twice; scattered light passes through those inside.",
+          medium and by each other, hide ambient light, stop scattered light, and send light back, twice.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "where the light scatters"),
         PortSpec::new("beams", PortType::Beams, "the light that enters").many().optional("there is only what the medium emits"),
@@ -76,6 +77,8 @@ const DIRECTIONS: [i64; 1 + LineSet::ALL.len()] = {
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Effort {
     lines: LineSet,
+    /// The finest grid that is swept, 0 the medium's own; finer ones get what comes from there.
+    first: usize,
     sweeps: usize,
     coarse_sweeps: usize,
     kind: Kind,
@@ -94,14 +97,20 @@ enum Kind {
 impl Effort {
     /// Sweeps of a cascade's grid, of so many with the finest first.
     fn sweeps_on(&self, idx: usize, n_grids: usize) -> usize {
-        if idx > 0 || n_grids == 1 { self.coarse_sweeps } else { self.sweeps }
+        if idx < self.first.min(n_grids - 1) {
+            0
+        } else if idx > 0 || n_grids == 1 {
+            self.coarse_sweeps
+        } else {
+            self.sweeps
+        }
     }
 
     /// Enough for what only lights surfaces: that need not be as good as what is seen, and of a cascade all
-    /// grids but the finest are solved.
+    /// grids but the two finest are solved, at a tenth of the cost.
     fn rough(self) -> Self {
         match self.kind {
-            Kind::Cascade => Self { sweeps: 0, coarse_sweeps: self.coarse_sweeps.min(8), ..self },
+            Kind::Cascade => Self { first: 2, coarse_sweeps: self.coarse_sweeps.min(8), ..self },
             _ => self,
         }
     }
@@ -161,6 +170,7 @@ fn solve(
         let sources = sources::sources(run, medium, beams, &channels, &problem)?;
         solver::solve(run, medium, &sources, &problem, effort, channels, level::BATCH_BYTES)?
     } else {
+        let problem = problem.behind(run.gpu, &surfaces, &solver::grids(medium.lattice.dims))?;
         bounce::solve(run, medium, beams, &surfaces, &problem, effort, channels)?
     };
     beams.fields.iter().try_fold(residual, |sum, field| fields::add(run, sum, field))

@@ -149,6 +149,7 @@ fn effort(run: &Run) -> Result<(Effort, bool), NodeError> {
     let lines = LineSet::from_count(or("directions", directions)).expect("a choice of the parameter");
     let effort = Effort {
         lines,
+        first: 0,
         sweeps: or("sweeps", sweeps),
         coarse_sweeps: or("coarse_sweeps", coarse_sweeps),
         kind,

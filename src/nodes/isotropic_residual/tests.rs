@@ -390,7 +390,7 @@ fn v_cycles_take_no_number_of_sweeps() {
 
 #[test]
 fn layouts_are_those_of_the_shaders() {
-    let lobes = [("lobes", "true")];
+    let lobes = [("lobes", "true"), ("walls", "true")];
     assert_layout::<ChannelTexel>("isotropic_residual/sweep.wgsl", "Channel", &lobes);
     assert_layout::<LevelParams>("isotropic_residual/sweep.wgsl", "Level", &lobes);
     assert_layout::<DirectionTexel>("isotropic_residual/sweep.wgsl", "Direction", &lobes);
@@ -406,3 +406,4 @@ fn layouts_are_those_of_the_shaders() {
 }
 
 mod power;
+mod walls;

@@ -124,9 +124,7 @@ fn layouts_are_those_of_the_shaders() {
 
 #[test]
 fn rows_of_threads_are_as_long_in_the_shader() {
-    let choices = [("pack", "1"), ("narrow", "true"), ("directions", "16"), ("channels", "1")];
-    let choices = choices.map(|(name, value)| (name, value.to_owned()));
-    let shader = Shader::expand("isotropic_residual/surface_light.wgsl", &choices).unwrap();
+    let shader = Shader::expand("isotropic_residual/surface_point.wgsl", &[]).unwrap();
     assert_eq!(wgsl_constant(&shader, "ROW").unwrap(), [ROW as f64]);
 }
 

@@ -5,9 +5,10 @@
 //! outermost value continued, so states stay within the bounds of what they come from. Tested by
 //! the power, by constants and by lines.
 
-use glam::{DVec3, DVec4};
+use glam::{DVec3, DVec4, IVec3};
 
 use super::Sources;
+use crate::geometry::oracle::{Ray, nearest};
 use crate::nodes::oracle_scene::OracleMedium;
 use crate::optics::delta::DeltaScaled;
 use crate::volume::field::{Field, Weigh};
@@ -26,6 +27,8 @@ pub struct Level {
     pub h: f64,
     /// Sources.
     pub sources: Sources,
+    /// Triangles of surfaces, in index space.
+    pub surfaces: Vec<[DVec3; 3]>,
 }
 
 impl Level {
@@ -33,7 +36,18 @@ impl Level {
     pub fn new(medium: &OracleMedium, sources: Sources) -> Self {
         assert_eq!(medium.sigma_t.dims, sources.q0.dims, "sources on another grid");
         let sigma_t = medium.sigma_t.clone();
-        Self { sigma_t, scaled: medium.scaled(), h: medium.h, sources }
+        Self { sigma_t, scaled: medium.scaled(), h: medium.h, sources, surfaces: Vec::new() }
+    }
+
+    /// The same with surfaces inside.
+    pub fn behind(self, surfaces: Vec<[DVec3; 3]>) -> Self {
+        Self { surfaces, ..self }
+    }
+
+    /// Whether a surface stands between the centers of a cell and the one at `e` from it.
+    pub fn is_walled(&self, cell: IVec3, e: IVec3) -> bool {
+        let ray = Ray { origin: cell.as_dvec3(), direction: e.as_dvec3() };
+        nearest(&self.surfaces, ray, 0.0, 0.0).is_some_and(|hit| hit.t < 1.0)
     }
 
     /// This grid and all coarser ones, finest first.
@@ -58,6 +72,7 @@ impl Level {
                 q1: box_average::<DVec3>(&self.sources.q1),
                 ambient: self.sources.ambient,
             },
+            surfaces: self.surfaces.iter().map(|corners| corners.map(|p| 0.5 * (p + 0.5) - 0.5)).collect(),
         })
     }
 }

@@ -11,8 +11,10 @@
 //!
 //! In each of them t c s + O = I + q s: power is conserved line by line, so Σ q + entering =
 //! Σ t c + leaving. phi = Σ w c, F = Σ w c ω. Lines start at the boundary with the ambient
-//! radiance. Tested by that balance to rounding over the extremes of media, by closed forms and by
-//! symmetry.
+//! radiance. A segment to the next cell that meets a surface ends there, into the surface, and starts anew with
+//! nothing but the ambient light that neither scattering nor absorption has met: what surfaces hide of that and
+//! what they send back are sources. Tested by that balance to rounding over the extremes of media, by closed forms
+//! and by symmetry.
 
 use glam::{DVec3, DVec4, IVec3};
 use rayon::prelude::*;
@@ -44,6 +46,8 @@ pub struct Balance {
     /// Carried out of the grid, by the face: −x, +x, −y, +y, −z, +z. A line that leaves through an
     /// edge or a corner counts for the last of its axes.
     pub leaving: [f64; 6],
+    /// Carried into surfaces inside of the grid.
+    pub into_surfaces: f64,
     /// Absorbed: Σ sigma_a phi h³.
     pub absorbed: f64,
 }
@@ -54,9 +58,9 @@ impl Balance {
         self.source + self.entering
     }
 
-    /// Leaving and absorbed power.
+    /// Leaving and absorbed power, also that which surfaces take.
     pub fn outgoing(&self) -> f64 {
-        self.leaving.iter().sum::<f64>() + self.absorbed
+        self.leaving.iter().sum::<f64>() + self.into_surfaces + self.absorbed
     }
 
     /// What phi, F and the outgoing power must be multiplied by so that as much leaves as comes.
@@ -81,6 +85,7 @@ impl Swept {
         let factor = self.balance.factor();
         self.state.data.iter_mut().for_each(|value| *value *= factor);
         self.balance.leaving = self.balance.leaving.map(|power| power * factor);
+        self.balance.into_surfaces *= factor;
         self.balance.absorbed *= factor;
         (self, factor)
     }
@@ -111,6 +116,7 @@ pub fn sweep(level: &Level, state: &Field<DVec4>, directions: &[LineDirection], 
         source: level.sources.q0.data.iter().sum::<f64>() * volume,
         entering: 0.0,
         leaving: [0.0; 6],
+        into_surfaces: 0.0,
         absorbed: 0.0,
     };
     for (line, one) in directions.iter().zip(&swept) {
@@ -119,6 +125,7 @@ pub fn sweep(level: &Level, state: &Field<DVec4>, directions: &[LineDirection], 
             *sum += *mean * moments;
         }
         balance.entering += one.entering;
+        balance.into_surfaces += one.into_surfaces;
         for (sum, power) in balance.leaving.iter_mut().zip(one.leaving) {
             *sum += power;
         }
@@ -151,6 +158,8 @@ struct SweptDirection {
     entering: f64,
     /// And that went out, by the face.
     leaving: [f64; 6],
+    /// And into surfaces.
+    into_surfaces: f64,
 }
 
 fn sweep_direction(
@@ -168,13 +177,19 @@ fn sweep_direction(
         let t = extinction(idx);
         (t > 0.0).then(|| lobes.data[idx].eval(unit) / t)
     };
-    let mut swept = SweptDirection { mean: vec![0.0; lobes.data.len()], entering: 0.0, leaving: [0.0; 6] };
+    let mut swept = SweptDirection {
+        mean: vec![0.0; lobes.data.len()],
+        entering: 0.0,
+        leaving: [0.0; 6],
+        into_surfaces: 0.0,
+    };
     for start in 0..lobes.data.len() {
         let first = IVec3::from_array(lobes.index_of(start).map(|i| i as i32));
         if inside(first - line.e, dims).is_some() {
             continue;
         }
         let mut radiance = level.sources.ambient;
+        let mut ambient = radiance;
         swept.entering += power_per_radiance * radiance;
         let (mut cell, mut idx, mut before) = (first, start, None);
         loop {
@@ -190,6 +205,18 @@ fn sweep_direction(
             };
             swept.mean[idx] = mean;
             radiance = outgoing;
+            if !level.surfaces.is_empty() {
+                // Of ambient light nothing is left but what is not yet absorbed or scattered.
+                ambient = match scheme {
+                    _ if t == 0.0 => ambient,
+                    Scheme::Diamond => diamond(ambient, 0.0, t, segment).1,
+                    Scheme::LinearSource => ambient * (-t * segment).exp(),
+                };
+                if next.is_some() && level.is_walled(cell, line.e) {
+                    swept.into_surfaces += power_per_radiance * (radiance - ambient);
+                    radiance = ambient;
+                }
+            }
             before = source_function(idx);
             cell += line.e;
             match next {

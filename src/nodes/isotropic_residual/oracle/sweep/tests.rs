@@ -79,6 +79,7 @@ fn random_state(dims: [usize; 3], random: &mut Random) -> Field<DVec4> {
 fn imbalance(level: &Level, state: &Field<DVec4>, swept: &Swept) -> f64 {
     let volume = level.h.powi(3);
     let (mut given, mut taken) = (swept.balance.entering, swept.balance.leaving.iter().sum::<f64>());
+    taken += swept.balance.into_surfaces;
     for idx in 0..state.data.len() {
         let sigma_t = level.sigma_t.data[idx];
         given += volume * sigma_t * level.scaled.sigma_s_ratio * state.data[idx].x;
@@ -132,6 +133,26 @@ fn the_check_of_conservation_sees_an_error() {
     let mut swept = sweep(&level, &state, &LineSet::Lines14.directions(), Scheme::Diamond);
     swept.state.data[7].x *= 1.0001;
     assert!(imbalance(&level, &state, &swept) > 1e-9);
+}
+
+#[test]
+fn surfaces_take_what_they_stop() {
+    // Through the whole grid, and a piece of one. As without surfaces, with as many more terms.
+    let wall = |x: f64, z: f64| [DVec3::new(x, -9.0, z), DVec3::new(9.0, -9.0, z), DVec3::new(x, 30.0, z)];
+    for scheme in [Scheme::Diamond, Scheme::LinearSource] {
+        for structure in [Structure::Random, Structure::Holes] {
+            let mut random = Random(3);
+            let level = level(structure, 1.0, 0.9, 0.5, &mut random);
+            let state = random_state(level.sigma_t.dims, &mut random);
+            let level = level.behind(vec![wall(-90.0, 1.2), wall(2.1, 2.3)]);
+            for set in LineSet::ALL {
+                let swept = sweep(&level, &state, &set.directions(), scheme);
+                assert!(swept.balance.into_surfaces > 0.0);
+                let error = imbalance(&level, &state, &swept);
+                assert!(error < 1e-12, "{scheme:?} {structure:?} {set:?}: {error}");
+            }
+        }
+    }
 }
 
 #[test]
