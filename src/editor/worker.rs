@@ -123,7 +123,9 @@ impl Worker {
         self.number += 1;
         // The thread ends with the window alone.
         let request = Request { number: self.number, ask, cancel: self.cancel.clone() };
-        let _ = self.requests.as_ref().map(|requests| requests.send(request));
+        if let Some(requests) = &self.requests {
+            let _ = requests.send(request);
+        }
         self.number
     }
 

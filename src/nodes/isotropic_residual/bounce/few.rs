@@ -38,7 +38,7 @@ pub(super) fn few(beams: &[Beam]) -> Vec<Beam> {
     }
     let parallel = merged.into_iter().filter_map(|(flow, power)| {
         let direction = flow.try_normalize()?;
-        Some(Beam { place: Place::Parallel(direction), power, a0: 1.0, window: None })
+        Some(Beam { place: Place::Parallel(direction), power, a0: 1.0, window: None, facing: None })
     });
     parallel.chain(lamps).collect()
 }
