@@ -1,7 +1,7 @@
 //! Rows of figures: what a table wire carries.
 //!
 //! Written as CSV (RFC 4180): a line of column names, then a line for each row, numbers as Rust prints an f64, which
-//! reads back to the same bits. Every file is written by [`atomic::write`](super::atomic::write): whole or not at all.
+//! reads back to the same bits. Every file is written by [`super::atomic::write`]: whole or not at all.
 //! Limits: finite numbers and column names without commas, quotes and line ends, which nodes see to. Tested by the text.
 
 use std::fmt::Write;

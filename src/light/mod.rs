@@ -37,7 +37,7 @@ pub enum Light {
         position: DVec3,
         /// Unit vector away from the lit side.
         normal: DVec3,
-        /// [W], linear Rec. 709: radiant intensity is power cos / pi.
+        /// Watts, linear Rec. 709: radiant intensity is power cos / pi.
         power: [f64; 3],
     },
 }

@@ -33,7 +33,7 @@ pub fn to_direction(at: [f64; 2]) -> DVec3 {
     on_octahedron(at).normalize()
 }
 
-/// Solid angle per area of the square [sr].
+/// Solid angle per area of the square in sr.
 pub fn solid_angle(at: [f64; 2]) -> f64 {
     on_octahedron(at).length().powi(-3)
 }

@@ -28,7 +28,7 @@ pub struct Points<'a> {
     pub corner_bytes: u64,
     /// Cells along the longest axis of the matter.
     pub longest: usize,
-    /// Distance of the farthest light [cells].
+    /// Distance of the farthest light in cells.
     pub farthest: f64,
     /// Whether the depths of the medium are known in closed form.
     pub is_closed: bool,

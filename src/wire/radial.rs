@@ -159,7 +159,7 @@ impl Spacing {
         }
     }
 
-    /// The directions of a grid, row by row, with the solid angle of each [sr]; of all directions 4 pi together.
+    /// The directions of a grid, row by row, with the solid angle of each in sr; of all directions 4 pi together.
     pub fn directions(&self, n_angular: usize) -> Vec<(DVec3, f64)> {
         let n = n_angular as f64;
         let area = self.extent[0] * self.extent[1] / (n * n);
