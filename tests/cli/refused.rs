@@ -20,7 +20,7 @@ fn graphs_that_are_none() {
     refused(
         "form.json",
         "form.json: the field \"nodes\" is missing; write \"nodes\": {}\n\
-         form.json: unknown field 'node'; did you mean 'nodes'? allowed are tyndall, about, nodes, wires, layout\n\
+         form.json: unknown field 'node'; did you mean 'nodes'? allowed are tyndall, about, nodes, wires, layout, bends, frames, inputs, outputs\n\
          form.json: wires[0] is 3; write \"node.output -> node.input\"\n",
     );
     desk.write_graph("wire.json", "march.image ->", "sun.light ->");
@@ -174,7 +174,7 @@ fn words_that_are_no_subcommand() {
     let desk = Desk::new();
     desk.run_blind(&["rendr", "g.json"]).refused(
         "error: there is no subcommand 'rendr'; did you mean 'render'? allowed are render, explain, inspect, compare, \
-         nodes, doctor\n",
+         nodes, new, doctor\n",
     );
 }
 

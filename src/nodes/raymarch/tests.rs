@@ -444,6 +444,7 @@ fn layouts_are_those_of_the_shader() {
             ("stack", "true"),
             ("surfaces", "true"),
             ("shadows", "true"),
+            ("radial", "true"),
             ("gathered", "true"),
             ("widening", "true"),
             ("emission", "true"),
