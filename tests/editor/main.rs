@@ -63,10 +63,10 @@ impl Desk {
         let running = Running(self.tyndall().arg(path).spawn().unwrap());
         // Named once the first frame was drawn.
         self.until("the window", || {
-            let found = self.xdotool(&["search", "--name", "– Tyndall"]);
+            let found = self.xdotool(&["search", "--name", "steam.json"]);
             !found.trim().is_empty()
         });
-        let id = self.xdotool(&["search", "--name", "– Tyndall"]);
+        let id = self.xdotool(&["search", "--name", "steam.json"]);
         self.xdotool(&["windowfocus", "--sync", id.lines().last().unwrap_or_default()]);
         running
     }
