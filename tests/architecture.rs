@@ -13,7 +13,10 @@ const ARROWS: &[(&str, &[&str])] = &[
     ("main", &["cli", "editor"]),
     (
         "editor",
-        &["session", "template", "nodes", "planner", "graph", "gpu", "wire", "image", "volume", "camera"],
+        &[
+            "session", "template", "nodes", "planner", "graph", "gpu", "wire", "image", "volume", "camera",
+            "optics",
+        ],
     ),
     ("cli", &["session", "template", "nodes", "planner", "graph", "gpu", "image", "volume"]),
     ("template", &["graph", "nodes", "volume"]),

@@ -306,7 +306,7 @@ impl eframe::App for App {
 
     fn on_exit(&mut self) {
         self.settings.save(Settings::file().as_deref());
-        self.give_up();
+        self.end();
     }
 }
 

@@ -57,6 +57,11 @@ fn dialog(title: &str, folder: Option<&Path>) -> FileDialog {
 }
 
 impl Files {
+    /// Whether the user has agreed to the end of the window.
+    pub fn is_closing(&self) -> bool {
+        self.may_close
+    }
+
     /// Asks for a graph.
     pub fn ask_graph(&mut self, folder: Option<&Path>) {
         let is_graph = |path: &Path| path.extension().is_some_and(|ending| ending == "json");

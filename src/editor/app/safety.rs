@@ -69,6 +69,13 @@ impl App {
         }
     }
 
+    /// The window ends. Where nobody agreed to that (the display is gone), what is not saved stays written down.
+    pub(super) fn end(&mut self) {
+        if self.files.is_closing() {
+            self.give_up();
+        }
+    }
+
     /// Goes back to the file, as a step of undo.
     pub(super) fn revert(&mut self) {
         match self.project.revert() {

@@ -6,8 +6,12 @@ use egui_kittest::kittest::Queryable;
 use super::*;
 
 fn harness() -> Harness<'static, App> {
+    harness_in(None)
+}
+
+fn harness_in(state: Option<PathBuf>) -> Harness<'static, App> {
     let adapter = AdapterChoice::Named("no such adapter".to_owned());
-    let mut app = App::new(&egui::Context::default(), None, &adapter, None);
+    let mut app = App::new(&egui::Context::default(), None, &adapter, state);
     app.settings = Settings::default();
     let draw = |ui: &mut Ui, app: &mut App| eframe::App::ui(app, ui, &mut eframe::Frame::_new_kittest());
     Harness::builder().with_size([1280.0, 800.0]).build_ui_state(draw, app)
@@ -111,4 +115,24 @@ fn shortcuts_and_themes() {
     harness.state_mut().perform(&context, Action::Light);
     harness.run_steps(2);
     assert!(!harness.ctx.global_style().visuals.dark_mode);
+}
+
+#[test]
+fn an_end_that_nobody_asked_for_keeps_what_is_not_saved() {
+    let state = tempfile::tempdir().unwrap();
+    let found = || crate::editor::project::recoverable(state.path()).len();
+    let mut harness = harness_in(Some(state.path().to_owned()));
+    harness.run_steps(3);
+    harness.get_by_label("Preset smoke").click();
+    harness.run_steps(3);
+    harness.state_mut().project.edit("say", |document| document.about = "mine".to_owned());
+    harness.run_steps(2);
+    harness.state_mut().end();
+    drop(harness);
+    // Written by a thread of its own.
+    let start = std::time::Instant::now();
+    while found() == 0 && start.elapsed().as_secs() < 10 {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    assert_eq!(found(), 1);
 }

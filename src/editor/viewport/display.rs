@@ -13,6 +13,7 @@ use rayon::prelude::*;
 
 use crate::image::tonemap::{self, Curve, srgb_encode};
 use crate::image::{ALPHA, Image, Layer};
+use crate::optics::spectrum;
 
 /// How radiance is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -73,7 +74,7 @@ const SMALL: usize = 160;
 
 /// Luminance of linear Rec. 709.
 pub fn luminance(rgb: [f32; 3]) -> f32 {
-    0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]
+    spectrum::luminance(rgb.map(f64::from)) as f32
 }
 
 /// Counts of a layer by stops.
