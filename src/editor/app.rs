@@ -61,6 +61,16 @@ pub struct App {
     asked: Option<solving::Asked>,
     /// The revision that was last looked through for frames.
     spanned: Option<u64>,
+    pictures_seen: PicturesSeen,
+}
+
+/// What a benchmark counts.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PicturesSeen {
+    /// Pictures of the node that is looked at, of whatever level.
+    pub count: u64,
+    /// The last one was computed whole.
+    pub is_whole: bool,
 }
 
 impl App {
@@ -100,12 +110,18 @@ impl App {
             lattice: None,
             asked: None,
             spanned: None,
+            pictures_seen: PicturesSeen::default(),
         };
         if let Some(file) = app.project.file().map(Path::to_owned) {
             app.settings.opened(&file);
         }
         app.keep_safe();
         app
+    }
+
+    /// What has come of the node that is looked at.
+    pub fn pictures_seen(&self) -> PicturesSeen {
+        self.pictures_seen
     }
 
     /// Does what was asked for.

@@ -6,6 +6,8 @@
 //! of the waiting requests only the newest is taken. Where the full fields are cached (only the camera
 //! moved) they are kept, and the picture alone gets smaller. Each reply carries the number of its request.
 //!
+//! It runs at a lower priority than the window (on Linux, where that is a matter of the thread).
+//!
 //! A device that is lost, or out of memory, is told, opened anew (its cache forgotten), and the request is
 //! tried once more; after that it waits for the next request. A panic in a node counts as a lost device.
 
@@ -101,6 +103,7 @@ impl Worker {
         let (done, replies) = channel();
         let adapter = adapter.clone();
         let thread = std::thread::spawn(move || {
+            step_back();
             let tell = |number, reply| {
                 // A window that is gone needs no replies.
                 let _ = done.send((number, reply));
@@ -143,6 +146,14 @@ impl Drop for Worker {
         // A panic of the thread was told when it happened.
         let _ = self.thread.take().map(JoinHandle::join);
     }
+}
+
+/// Lets the window's frames go first. Where there is no GPU the driver's threads, which inherit it, would
+/// otherwise keep every core from them.
+fn step_back() {
+    #[cfg(target_os = "linux")]
+    // Of two threads that want a core, one of nice 5 gets a quarter. Refused, the window is less smooth.
+    let _ = rustix::process::nice(5);
 }
 
 fn serve(adapter: &AdapterChoice, to_do: &Receiver<Request>, tell: &dyn Fn(u64, Reply)) {

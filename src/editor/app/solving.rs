@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::App;
+use super::{App, PicturesSeen};
 use crate::editor::NodeState;
 use crate::editor::look::{self, Look};
 use crate::editor::viewport::{self, Picture, Tone};
@@ -103,6 +103,8 @@ impl App {
                     source.as_ref().is_some_and(|source| source.node == name && source.port == port);
                 if is_looked_at {
                     self.figures.trouble = None;
+                    let count = self.pictures_seen.count + 1;
+                    self.pictures_seen = PicturesSeen { count, is_whole: level.is_full() };
                     match level.is_full() {
                         true if wall_ms > 1.0
                             && costs.iter().any(|cost| cost.name == name && !cost.cached) =>
