@@ -95,8 +95,9 @@ impl Project {
             return Ok(false);
         };
         let Self { document, saved, left_out, .. } = Self::load(file)?;
-        self.edit("revert to the file", |now| *now = document);
-        (self.saved, self.left_out) = (saved, left_out);
+        let frame = self.document.frame;
+        self.edit("revert to the file", |now| *now = Document { frame, ..document });
+        (self.saved, self.left_out) = (saved.map(|saved| Document { frame, ..saved }), left_out);
         Ok(true)
     }
 
@@ -107,8 +108,8 @@ impl Project {
     pub fn restore(&mut self, version: &versions::Version) -> Result<(), DocumentError> {
         let Self { document, .. } = Self::load(&version.path)?;
         // Its relative paths start at the graph, not at the version.
-        let base = self.document.base.clone();
-        self.edit("restore a version", |now| *now = Document { base, ..document });
+        let Document { base, frame, .. } = self.document.clone();
+        self.edit("restore a version", |now| *now = Document { base, frame, ..document });
         Ok(())
     }
 }

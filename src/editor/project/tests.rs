@@ -66,6 +66,25 @@ fn saved_and_unsaved() {
 }
 
 #[test]
+fn looking_at_another_frame_is_no_change() {
+    let (_dir, file, _) = folder();
+    let mut project = Project::load(&file).unwrap();
+    let revision = project.revision();
+    project.look_at(Some(3));
+    assert_eq!((project.document().frame, project.revision()), (Some(3), revision));
+    assert!(!project.is_unsaved() && !project.can_undo());
+    project.edit("say", say("a"));
+    project.look_at(Some(5));
+    project.undo();
+    assert!(project.document().frame == Some(5) && !project.is_unsaved());
+    project.redo();
+    assert!(project.revert().unwrap());
+    assert!(project.document().frame == Some(5) && !project.is_unsaved());
+    project.look_at(None);
+    assert!(!project.is_unsaved());
+}
+
+#[test]
 fn another_folder_reaches_the_same_files() {
     let (dir, file, _) = folder();
     let mut project = Project::load(&file).unwrap();
