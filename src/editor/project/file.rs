@@ -16,7 +16,11 @@ impl Project {
     pub fn load(path: &Path) -> Result<Self, DocumentError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| DocumentError::Read { path: path.to_owned(), source })?;
-        let (document, left_out) = Document::open_leniently(&text, &folder(path))?;
+        let (mut document, mut left_out) = Document::open_leniently(&text, &folder(path))?;
+        // A file that is understood in full keeps its mistakes, which are its author's to mend.
+        if !left_out.is_empty() {
+            left_out.extend(document.leave_out_unknown(catalog()));
+        }
         let saved = left_out.is_empty().then(|| document.clone());
         Ok(Self { saved, document, left_out, file: Some(path.to_owned()), ..Self::default() })
     }
