@@ -39,6 +39,8 @@ pub enum Action {
     FrameMedium,
     /// The histogram of the picture.
     Histogram,
+    /// A plane through a field.
+    Slice,
     /// Keeps the picture to compare with.
     StoreA,
     /// Keeps another one.
@@ -149,6 +151,7 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)),
     spec(Action::ActualSize, "View", "Picture at 1:1", key(COMMAND, Key::Num1)),
     spec(Action::FrameMedium, "View", "Frame the medium", key(COMMAND, Key::Num2)),
+    spec(Action::Slice, "View", "Slice plane", key(COMMAND, Key::Num3)),
     spec(Action::Histogram, "View", "Histogram", key(COMMAND, Key::H)),
     spec(Action::StoreA, "View", "Store picture A", key(COMMAND, Key::F1)),
     spec(Action::Play, "View", "Play or stop", key(COMMAND, Key::Space)),

@@ -22,9 +22,8 @@ use super::presets::{self, Preset};
 use super::settings::{Settings, ThemeChoice};
 use super::viewport::{Picture, Scene, Viewport};
 use super::{Project, Selection, Statuses, Worker, inspector, theme};
-use crate::camera::Camera;
 use crate::gpu::AdapterChoice;
-use crate::graph::{Document, flatten};
+use crate::graph::flatten;
 use crate::nodes::catalog;
 use crate::template;
 use crate::volume::Lattice;
@@ -62,6 +61,8 @@ pub struct App {
     /// The revision that was last looked through for frames.
     spanned: Option<u64>,
     pictures_seen: PicturesSeen,
+    /// The device is to be opened anew.
+    restarts: bool,
 }
 
 /// What a benchmark counts.
@@ -111,6 +112,7 @@ impl App {
             asked: None,
             spanned: None,
             pictures_seen: PicturesSeen::default(),
+            restarts: false,
         };
         if let Some(file) = app.project.file().map(Path::to_owned) {
             app.settings.opened(&file);
@@ -143,6 +145,7 @@ impl App {
             Action::FitPicture => self.viewport.fit(),
             Action::ActualSize => self.viewport.one_to_one(context),
             Action::Histogram => self.viewport.toggle_histogram(),
+            Action::Slice => self.viewport.slice.toggle(),
             Action::FrameMedium => self.with_scene(|viewport, project, scene| viewport.frame(project, scene)),
             Action::StoreA => self.with_scene(|viewport, _, scene| viewport.store(0, scene)),
             Action::StoreB => self.with_scene(|viewport, _, scene| viewport.store(1, scene)),
@@ -155,7 +158,7 @@ impl App {
             Action::Dark => self.theme_to(context, ThemeChoice::Dark),
             Action::Light => self.theme_to(context, ThemeChoice::Light),
             Action::System => self.theme_to(context, ThemeChoice::System),
-            Action::Retry => self.asked = None,
+            Action::Retry => self.retry(),
             Action::Canvas(command) => self.canvas.ask(command),
         }
     }
@@ -186,13 +189,15 @@ impl App {
     }
 
     fn has_frames(&self) -> bool {
-        self.is_open && self.player.range[1] > self.player.range[0]
+        self.is_open && self.player.has_frames()
     }
 
     /// Calls `body` with what the viewport shows.
     fn with_scene(&mut self, body: impl FnOnce(&mut Viewport, &mut Project, &Scene)) {
         let camera =
-            self.look.as_ref().and_then(|look| camera_of(self.project.document(), look.camera.as_ref()?));
+            self.look.as_ref().and_then(|look| look::camera(self.project.document(), look.camera.as_ref()?));
+        let slices = self.viewport.slice.is_on();
+        let flat = slices.then(|| flatten(self.project.document(), catalog()).into_owned());
         let scene = Scene {
             look: self.look.as_ref(),
             pictures: &self.pictures,
@@ -200,6 +205,7 @@ impl App {
             bounds: self.lattice.as_ref().map(solving::bounds),
             problem: self.problem(),
             is_busy: self.figures.running.is_some() || self.figures.adapter.is_none(),
+            flat: flat.as_ref(),
         };
         body(&mut self.viewport, &mut self.project, &scene);
     }
@@ -207,13 +213,15 @@ impl App {
     fn follow_frames(&mut self, ui: &Ui) {
         if self.spanned != Some(self.project.revision()) {
             self.spanned = Some(self.project.revision());
-            let (range, missing) = super::player::span(self.project.document()).unwrap_or_default();
-            self.player.set_span(range, missing);
+            let flat = flatten(self.project.document(), catalog());
+            self.player.set_span(super::player::span(&flat));
         }
         self.player.advance(ui.input(|input| input.time), self.settings.fps);
         if self.player.is_playing() {
             ui.ctx().request_repaint_after_secs((0.5 / self.settings.fps) as f32);
         }
+        // What has keys is shown and set as it is at the frame.
+        self.project.look_at(self.has_frames().then_some(self.player.frame));
     }
 
     fn page(&mut self, ui: &mut Ui) {
@@ -253,29 +261,17 @@ impl App {
         }
         let frame = Frame::central_panel(ui.style()).inner_margin(6.0);
         CentralPanel::default().frame(frame).show(ui, |ui| {
+            let before = self.project.revision();
             self.with_scene(|viewport, project, scene| viewport.show(ui, project, scene));
+            // A hand on a camera with keys sets one, at a frame that stands.
+            let camera = self.look.as_ref().and_then(|look| look.camera.as_ref());
+            if before != self.project.revision()
+                && camera.is_some_and(|name| Viewport::has_keys(self.project.document(), name))
+            {
+                self.player.stop();
+            }
         });
     }
-}
-
-/// The camera as its node says it; `None` where its parameters are not plain numbers.
-fn camera_of(document: &Document, name: &str) -> Option<Camera> {
-    let node = document.node(name)?;
-    let spec = catalog().find(&node.type_id)?;
-    let params =
-        crate::graph::Params::resolve(spec.params, &node.params, &document.base, Default::default()).ok()?;
-    // What moves with the frame is not moved by hand.
-    if node.params.values().any(serde_json::Value::is_object) {
-        return None;
-    }
-    Some(Camera {
-        position: glam::DVec3::from_array(params.vec("position")),
-        look_at: glam::DVec3::from_array(params.vec("look_at")),
-        up: glam::DVec3::from_array(params.vec("up")),
-        fov_y_deg: params.f64("fov_y_deg"),
-        width: params.i64("width") as usize,
-        height: params.i64("height") as usize,
-    })
 }
 
 impl eframe::App for App {

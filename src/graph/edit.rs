@@ -11,6 +11,7 @@ mod clipboard;
 mod groups;
 mod nodes;
 mod paths;
+mod unknown;
 mod wires;
 
 use std::path::Path;

@@ -49,7 +49,11 @@ pub fn show(ui: &mut Ui, slot: &mut Slot, width: f32) -> Option<String> {
     typed.or(chosen)
 }
 
-fn choices(ui: &Ui, document: &Document, node: &str) -> Found {
+/// The grids of the volume that a node reads, or why none are known.
+///
+/// # Errors
+/// Where no volume is wired, or its file cannot be read.
+pub fn choices(ui: &Ui, document: &Document, node: &str) -> Found {
     let Some(path) = file(document, node)? else {
         return Ok(vec![Choice { name: "density".to_owned(), about: "shape".to_owned() }]);
     };

@@ -12,6 +12,9 @@ use crate::graph::NodeSpec;
 use crate::nodes::catalog;
 use slot::Slot;
 
+pub use grids::choices as grid_choices;
+pub use slot::put_key;
+
 mod color;
 mod curve;
 mod direction;

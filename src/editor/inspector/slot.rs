@@ -242,7 +242,7 @@ fn place(mut object: &mut Map<String, Json>, path: &[&str], value: Option<Json>)
 }
 
 /// Puts a key where it belongs, in place of one at its frame.
-fn put_key(keys: &mut Vec<Json>, frame: i64, value: Json) {
+pub fn put_key(keys: &mut Vec<Json>, frame: i64, value: Json) {
     let at = |key: &Json| key[0].as_f64().unwrap_or(f64::NEG_INFINITY);
     keys.retain(|key| at(key) != frame as f64);
     let place = keys.partition_point(|key| at(key) < frame as f64);

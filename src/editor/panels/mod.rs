@@ -53,6 +53,7 @@ impl Possible {
             | Action::ActualSize
             | Action::FrameMedium
             | Action::Histogram
+            | Action::Slice
             | Action::StoreA
             | Action::StoreB => self.graph,
             _ => true,

@@ -12,6 +12,8 @@ const GESTURES: &[(&str, &str)] = &[
     ("Wheel", "Come nearer"),
     ("Right drag, W A S D Q E", "Look around and fly"),
     ("Ctrl wheel, Ctrl drag", "Zoom and move the picture"),
+    ("Drag the slice's knob", "Move the slice plane"),
+    ("Wheel or drag, slice flat", "Move it through the field"),
     ("Double-click a node", "Look at its picture"),
 ];
 

@@ -77,6 +77,14 @@ impl Project {
         self.saved.as_ref() != Some(&self.document)
     }
 
+    /// Looks at another frame, which changes nothing that is saved or undone.
+    pub fn look_at(&mut self, frame: Option<i64>) {
+        self.document.frame = frame;
+        if let Some(saved) = &mut self.saved {
+            saved.frame = frame;
+        }
+    }
+
     /// Changes the graph, as one step of undo. What changes nothing is no step.
     pub fn edit(&mut self, label: &str, change: impl FnOnce(&mut Document)) {
         self.gesture = None;
@@ -126,9 +134,11 @@ impl Project {
         !self.redo.is_empty()
     }
 
-    fn swap(&mut self, step: Step) -> Step {
+    fn swap(&mut self, mut step: Step) -> Step {
         self.gesture = None;
         self.revision += 1;
+        // The frame is no part of the step.
+        step.document.frame = self.document.frame;
         Step { label: step.label, document: std::mem::replace(&mut self.document, step.document) }
     }
 
