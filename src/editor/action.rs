@@ -51,6 +51,8 @@ pub enum Action {
     NextFrame,
     /// The frame before this one.
     PreviousFrame,
+    /// Brings the keyboard to the canvas, or from there to the inspector.
+    OtherPart,
     /// Larger text and controls.
     Larger,
     /// Smaller text and controls.
@@ -157,6 +159,7 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::Play, "View", "Play or stop", key(COMMAND, Key::Space)),
     spec(Action::NextFrame, "View", "Next frame", key(COMMAND, Key::ArrowRight)),
     spec(Action::PreviousFrame, "View", "Previous frame", key(COMMAND, Key::ArrowLeft)),
+    spec(Action::OtherPart, "View", "To canvas or inspector", key(NONE, Key::F6)),
     spec(Action::Larger, "View", "Larger interface", key(COMMAND, Key::Equals)),
     spec(Action::Smaller, "View", "Smaller interface", key(COMMAND, Key::Minus)),
     spec(Action::NormalSize, "View", "Normal interface", None),

@@ -63,6 +63,8 @@ pub struct App {
     pictures_seen: PicturesSeen,
     /// The device is to be opened anew.
     restarts: bool,
+    /// The inspector is to have the keyboard.
+    inspects: bool,
 }
 
 /// What a benchmark counts.
@@ -73,6 +75,9 @@ pub struct PicturesSeen {
     /// The last one was computed whole.
     pub is_whole: bool,
 }
+
+/// What the canvas has of the window's height, where the user did not choose.
+const CANVAS_SHARE: f32 = 0.4;
 
 impl App {
     /// On a graph, or on the start page. What is not saved is kept in `state`, the program's own folder.
@@ -113,6 +118,7 @@ impl App {
             spanned: None,
             pictures_seen: PicturesSeen::default(),
             restarts: false,
+            inspects: false,
         };
         if let Some(file) = app.project.file().map(Path::to_owned) {
             app.settings.opened(&file);
@@ -152,6 +158,8 @@ impl App {
             Action::Play => self.player.toggle(now),
             Action::NextFrame => self.player.go_to(self.player.frame.saturating_add(1)),
             Action::PreviousFrame => self.player.go_to(self.player.frame.saturating_sub(1)),
+            Action::OtherPart if self.canvas.is_focused() => self.inspects = true,
+            Action::OtherPart => self.canvas.take_keyboard(&self.selection),
             Action::Larger => self.scale_to(context, self.settings.scale + 0.1),
             Action::Smaller => self.scale_to(context, self.settings.scale - 0.1),
             Action::NormalSize => self.scale_to(context, 1.0),
@@ -190,6 +198,11 @@ impl App {
 
     fn has_frames(&self) -> bool {
         self.is_open && self.player.has_frames()
+    }
+
+    /// The frame that is looked at, where there are several.
+    fn asks_frame(&self) -> Option<i64> {
+        self.has_frames().then_some(self.player.frame)
     }
 
     /// Calls `body` with what the viewport shows.
@@ -242,20 +255,39 @@ impl App {
         }
         let width = self.settings.inspector_width;
         let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
-        let shown =
-            panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
+        let context = inspector::Context {
+            selection: &self.selection,
+            statuses: &self.statuses,
+            opened: self.canvas.group(),
+            frame: self.asks_frame(),
+            takes_keyboard: std::mem::take(&mut self.inspects),
+        };
+        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &context));
         self.settings.inspector_width = shown.response.rect.width();
-        let height = self.settings.canvas_height;
+        if let Some(name) = shown.inner {
+            self.selection.only(&name);
+            self.canvas.reveal(&name);
+        }
+        // Of the window's height enough for a graph of seven layers to be read.
+        let usual = (CANVAS_SHARE * ui.ctx().content_rect().height()).round();
+        let height = self.settings.canvas_height.unwrap_or(usual);
         let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
         let shown = panel.frame(Frame::new()).show(ui, |ui| {
             let (project, selection) = (&mut self.project, &mut self.selection);
             self.canvas.show(ui, project, selection, &self.statuses, &self.thumbnails)
         });
-        self.settings.canvas_height = shown.response.rect.height();
+        let height = shown.response.rect.height();
+        if (height - usual).abs() > 1.0 && ui.input(|input| input.pointer.any_down()) {
+            self.settings.canvas_height = Some(height);
+        }
         for request in shown.inner {
             match request {
                 Request::Show(name) => self.chosen = Some(name),
-                Request::Inspect(name) => self.selection.only(&name),
+                Request::Inspect(name) => {
+                    self.selection.only(&name);
+                    self.canvas.reveal(&name);
+                    self.inspects = true;
+                }
                 Request::SavePreset(name) => self.ask_preset(&name),
             }
         }

@@ -25,6 +25,8 @@ mod preview;
 mod project;
 mod selection;
 mod settings;
+#[cfg(test)]
+mod snapshot;
 mod status;
 mod theme;
 mod viewport;

@@ -52,7 +52,7 @@ impl App {
         let now = context.input(|input| input.time);
         let is_down = context.input(|input| input.pointer.any_down());
         let is_drag = is_down || self.viewport.is_moving(now) || self.player.is_playing();
-        let frame = self.has_frames().then_some(self.player.frame);
+        let frame = self.asks_frame();
         if frame.is_some_and(|frame| self.player.broken.contains_key(&frame)) {
             return;
         }

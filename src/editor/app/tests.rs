@@ -44,6 +44,63 @@ fn a_preset_opens_as_an_unsaved_copy() {
     assert!(!harness.state().is_open);
 }
 
+/// As the window hands it in.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_dropped_volume_is_lit() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    let volume = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/steam.vdb");
+    harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(volume.clone())));
+    harness.run_steps(2);
+    let document = harness.state().document();
+    let node = |kind: &str| document.nodes.values().find(|node| node.type_id == kind).unwrap();
+    assert_eq!(node("load_vdb").params["path"].as_str(), volume.to_str());
+    // Density scale and camera are ordinary parameters.
+    assert!(node("medium").params["density_scale"].as_f64().is_some_and(|scale| scale > 0.0));
+    assert!(node("camera").params["look_at"].is_array());
+    assert!(harness.state().is_open);
+    // What cannot be opened says so, and leaves what is there.
+    let nothing = PathBuf::from("/nowhere/nothing.vdb");
+    let folder = tempfile::tempdir().unwrap();
+    harness.state_mut().project.save_as(&folder.path().join("graph.json")).unwrap();
+    harness.input_mut().dropped_files = vec![std::sync::Arc::new(Dropped(nothing))];
+    harness.run_steps(2);
+    assert!(harness.query_all_by_label_contains("/nowhere/nothing.vdb").next().is_some());
+    assert!(harness.state().is_open);
+}
+
+#[test]
+fn a_link_and_the_enter_key_lead_to_a_node() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.get_by_label("Preset smoke").click();
+    harness.run_steps(3);
+    harness.get_by_label("node medium").click();
+    harness.run_steps(3);
+    harness.get_by_label("plume.volume").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().selection.active(), Some("plume"));
+    assert!(harness.query_by_label("plume.path").is_some());
+    harness.get_by_label("node sun").click();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.get_by_label("inspector of sun").is_focused());
+}
+
 #[test]
 fn the_palette_finds_and_runs() {
     let mut harness = harness();

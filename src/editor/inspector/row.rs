@@ -5,7 +5,7 @@ use egui::{
 };
 use serde_json::{Map, Value as Json};
 
-use super::number::{entry, field, handle, help, named, slider};
+use super::number::{entry, field, handle, help, in_role, named, slider};
 use super::slot::Slot;
 use super::{color, curve, direction, grids, path};
 use crate::graph::ParamKind;
@@ -238,8 +238,14 @@ fn choose(ui: &mut Ui, slot: &mut Slot, choices: &[Json], width: f32) -> Option<
     slot.set(chosen?, None).err()
 }
 
-/// Unit, key and reset.
+/// Whether others differ, unit, key and reset.
 fn tail(ui: &mut Ui, slot: &mut Slot) {
+    if slot.is_mixed() {
+        let text = RichText::new("mixed").small().color(ui.visuals().warn_fg_color);
+        let response = ui.label(text).on_hover_text("The other selected nodes have another value.");
+        named(&response, &format!("{} mixed", slot.name()));
+        in_role(&response, egui::accesskit::Role::Status);
+    }
     if !slot.spec.unit.is_empty() {
         ui.weak(slot.spec.unit);
     }
@@ -296,7 +302,8 @@ fn tail_width(slot: &Slot) -> f32 {
     let unit =
         if slot.spec.unit.is_empty() { 0.0 } else { 7.0 * slot.spec.unit.chars().count() as f32 + spacing };
     let key = if slot.spec.kind.takes_keys() { BUTTON + spacing } else { 0.0 };
-    unit + key + BUTTON + spacing
+    let mixed = if slot.is_mixed() { 32.0 + spacing } else { 0.0 };
+    mixed + unit + key + BUTTON + spacing
 }
 
 fn width_before_tail(ui: &Ui, slot: &Slot) -> f32 {

@@ -49,6 +49,7 @@ impl Possible {
             | Action::SaveAs
             | Action::Revert
             | Action::Versions
+            | Action::OtherPart
             | Action::FitPicture
             | Action::ActualSize
             | Action::FrameMedium

@@ -74,7 +74,7 @@ impl Project {
 
     /// Whether it differs from its file.
     pub fn is_unsaved(&self) -> bool {
-        self.saved.as_ref() != Some(&self.document)
+        !self.saved.as_ref().is_some_and(|saved| saved.is_as(&self.document))
     }
 
     /// Looks at another frame, which changes nothing that is saved or undone.
@@ -146,7 +146,7 @@ impl Project {
     fn apply(&mut self, label: &str, change: impl FnOnce(&mut Document)) -> bool {
         let before = self.document.clone();
         change(&mut self.document);
-        if self.document == before {
+        if self.document.is_as(&before) {
             return false;
         }
         self.undo.push(Step { label: label.to_owned(), document: before });

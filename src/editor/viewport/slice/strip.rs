@@ -4,7 +4,7 @@ use egui::{ComboBox, DragValue, Slider, Ui, WidgetInfo, WidgetType};
 
 use super::{Axis, Field, NAME, Slice, fields};
 use crate::editor::inspector::grid_choices;
-use crate::graph::{Document, PortType};
+use crate::graph::{Document, Moment, PortType};
 use crate::image::colormap;
 
 fn named(response: &egui::Response, kind: WidgetType, name: &str) {
@@ -85,7 +85,8 @@ fn of_field(slice: &mut Slice, ui: &mut Ui, document: &Document, field: &Field) 
                 let mut with_slice = document.clone();
                 slice.add_to(&mut with_slice);
                 let mut chosen = None;
-                match grid_choices(ui, &with_slice, NAME) {
+                let moment = Moment { frame: document.frame, is_aside: false };
+                match grid_choices(ui, &with_slice, NAME, moment) {
                     Ok(grids) => {
                         for grid in grids {
                             let text = format!("{}   {}", grid.name, grid.about);
