@@ -7,7 +7,7 @@ mod solving;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use egui::{CentralPanel, Frame, Panel, TextureHandle, Ui};
+use egui::{CentralPanel, Frame, Panel, Sense, TextureHandle, Ui, UiBuilder};
 
 use super::action::{self, Action};
 use super::canvas::{Canvas, Request};
@@ -262,7 +262,13 @@ impl App {
             frame: self.asks_frame(),
             takes_keyboard: std::mem::take(&mut self.inspects),
         };
-        let shown = panel.show(ui, |ui| inspector::show(ui, &mut self.project, &context));
+        let shown = panel.show(ui, |ui| {
+            // What is too wide is cut: a panel that grew with it would move the canvas with each selection.
+            let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+            let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
+            inside.set_clip_rect(rect.expand(4.0).intersect(ui.clip_rect()));
+            inspector::show(&mut inside, &mut self.project, &context)
+        });
         self.settings.inspector_width = shown.response.rect.width();
         if let Some(name) = shown.inner {
             self.selection.only(&name);

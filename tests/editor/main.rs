@@ -111,6 +111,8 @@ impl Desk {
         go(from[0], from[1]);
         std::thread::sleep(Duration::from_millis(300));
         self.xdotool(&["mousedown", "1"]);
+        // A window that computes draws few frames; the press has to be in one before the move.
+        std::thread::sleep(Duration::from_millis(300));
         for n in 1..=10 {
             go(from[0] + by[0] * n / 10, from[1] + by[1] * n / 10);
             std::thread::sleep(Duration::from_millis(50));
@@ -177,12 +179,29 @@ fn a_gesture_is_saved_undone_and_found_again() {
 const BACKGROUND: u32 = 0x0017_191d;
 const SELECTED: u32 = 0x00ff_b454;
 const LIGHT: u32 = 0x009c_6810;
+/// Behind what is open over the rest.
+const POPUP: u32 = 0x0022_2429;
 /// What is filled of a slider.
 const FILLED: u32 = 0x0045_6891;
 
 /// A part of the screen that is a node: the largest that is outlined as selected, or in which a color is.
 fn largest(spots: Vec<Spot>) -> Option<Spot> {
     spots.into_iter().max_by_key(|spot| spot.size()[0] * spot.size()[1])
+}
+
+/// Draws a wire from the new node, which is selected, to the split.
+fn wire_to_split(desk: &Desk) {
+    let screen = desk.screen();
+    let new = largest(screen.spots(SELECTED)).expect("the new node is selected");
+    // A wire that ends on a node finds the port that fits. Of the nodes with a light's header the split is the
+    // rightmost.
+    let headers = screen.spots(LIGHT).into_iter();
+    let headers = headers.filter(|spot| spot.size()[0] > 30 && !new.contains(spot.center()));
+    let split = headers.max_by_key(|spot| spot.min[0]).expect("the split");
+    // Its only row holds its output: header 42, pad 5 and half a row of 20, of 92 points in all.
+    let from = [new.max[0] - 2, new.min[1] + (new.size()[1] * 57 + 46) / 92];
+    let [to_x, to_y] = split.center();
+    desk.drag(from, [to_x - from[0], to_y - from[1]]);
 }
 
 /// Drags the handle of the first slider of the inspector, which is at the end of what is filled.
@@ -239,34 +258,33 @@ fn a_volume_is_dropped_and_its_graph_changed_saved_and_opened_again() {
         }
         place.is_some()
     });
+    let is_open = || desk.screen().spots(POPUP).iter().any(|spot| spot.size()[0] > 250);
     desk.hover(place.unwrap());
+    // Once: in an open search the key leaves its field.
     desk.key("Tab");
+    desk.until("the search", is_open);
     desk.xdotool(&["type", "sun"]);
-    std::thread::sleep(Duration::from_millis(500));
+    std::thread::sleep(Duration::from_secs(2));
     desk.key("Return");
+    desk.until("the end of the search", || !is_open());
     save("the new node", &|graph| graph["nodes"]["sun_2"]["type"] == "sun");
 
-    // Its only row holds its output; a wire that ends on a node finds the port that fits. Of the nodes with a
-    // light's header the split is the rightmost.
-    let screen = desk.screen();
-    let new = largest(screen.spots(SELECTED)).expect("the new node is selected");
-    let header =
-        screen.spots(LIGHT).into_iter().filter(|spot| spot.size()[0] > 30 && !new.contains(spot.center()));
-    let split = header.max_by_key(|spot| spot.min[0]).expect("the split");
-    // Rows of a node with a type below its name, from its top: header 42, pad 5, half a row 10, of 92 points.
-    let from = [new.max[0] - 2, new.min[1] + (new.size()[1] * 57 + 46) / 92];
-    let [to_x, to_y] = split.center();
-    desk.drag(from, [to_x - from[0], to_y - from[1]]);
-    let is_wired = |graph: &Json| {
+    // Again where a picture that comes makes its node larger, and the rest moves.
+    desk.until("the wire", || {
+        wire_to_split(&desk);
+        desk.key("ctrl+s");
+        let graph = read();
         let wires = graph["wires"].as_array().unwrap();
         wires.iter().any(|wire| wire == "sun_2.light -> split.lights")
-    };
-    save("the wire", &is_wired);
+    });
     let wired = read();
 
     // The slider of the new sun, which is still selected.
-    slide(&desk);
-    save("the slider", &|graph| graph["nodes"]["sun_2"] != wired["nodes"]["sun_2"]);
+    desk.until("the slider", || {
+        slide(&desk);
+        desk.key("ctrl+s");
+        read()["nodes"]["sun_2"] != wired["nodes"]["sun_2"]
+    });
     let slid = read();
     assert_eq!(slid["wires"], wired["wires"]);
     desk.key("ctrl+z");

@@ -92,7 +92,7 @@ impl Screen {
         found
     }
 
-    /// The middle of a part of this size that is all of a color, but for what covers a tenth of it.
+    /// The middle of a part of this size that is all of a color, but for what covers a fiftieth of it.
     pub fn room(&self, color: u32, [width, height]: [i32; 2]) -> Option<[i32; 2]> {
         let [all_width, all_height] = self.size.map(|n| n as i32);
         let is_room = |left: i32, top: i32| {
@@ -100,7 +100,7 @@ impl Screen {
             for y in (top..top + height).step_by(2) {
                 other += (left..left + width).step_by(2).filter(|x| !self.is([*x, y], color)).count() as i32;
             }
-            40 * other <= width * height
+            200 * other <= width * height
         };
         let lefts = || (0..all_width - width).step_by(8);
         let tops = (0..all_height - height).step_by(8);
@@ -114,17 +114,17 @@ impl Screen {
 #[test]
 fn spots_and_room_are_found() {
     let mut screen = Screen { size: [40, 30], pixels: vec![0x0010_2030; 1200] };
-    for y in 5..9 {
+    for y in 5..8 {
         for x in 10..20 {
             screen.pixels[y * 40 + x] = 0x00ff_0102;
         }
     }
     screen.pixels[29 * 40 + 39] = 0x00ff_0000;
     let spots = screen.spots(0x00ff_0000);
-    assert_eq!(spots[0], Spot { min: [10, 5], max: [20, 9] });
+    assert_eq!(spots[0], Spot { min: [10, 5], max: [20, 8] });
     assert_eq!(spots[1], Spot { min: [39, 29], max: [40, 30] });
-    assert_eq!((spots.len(), spots[0].center(), spots[0].size()), (2, [15, 7], [10, 4]));
-    assert!(spots[0].contains([19, 8]) && !spots[0].contains([20, 8]));
+    assert_eq!((spots.len(), spots[0].center(), spots[0].size()), (2, [15, 6], [10, 3]));
+    assert!(spots[0].contains([19, 7]) && !spots[0].contains([20, 7]));
     let room = screen.room(0x0010_2030, [30, 18]).unwrap();
     assert!(room[1] - 9 >= 8, "{room:?}");
     assert_eq!(screen.room(0x00ff_0000, [10, 10]), None);

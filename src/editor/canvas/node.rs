@@ -81,7 +81,7 @@ impl Brush<'_> {
         let inset = 10.0 * zoom;
         let state = self.state_rect(node);
         if zoom < NEAR_NAMES {
-            return self.from_afar(node, status, look, white);
+            return self.head_alone(node, status, look, white);
         }
         // From afar there is no room for a second line, and the name has the header to itself.
         let has_type = node.type_id != node.name && zoom > NEAR_TYPES;
@@ -111,7 +111,7 @@ impl Brush<'_> {
     }
 
     /// Its name, and below that its time where there is room for it.
-    fn from_afar(&self, node: &NodeShape, status: &NodeStatus, look: NodeLook, color: Color32) {
+    fn head_alone(&self, node: &NodeShape, status: &NodeStatus, look: NodeLook, color: Color32) {
         let zoom = self.view.zoom;
         let rect = self.view.rect_to_screen(node.rect);
         let size = (30.0 * zoom).clamp(8.0, 11.0);

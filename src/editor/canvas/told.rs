@@ -4,6 +4,9 @@ use crate::editor::panels::status_bar::time;
 use crate::editor::{NodeState, NodeStatus};
 use crate::graph::Decision;
 
+/// Less reads 0.0 ms.
+const LEAST_MS: f64 = 0.05;
+
 /// State and cost for the foot of a node, the most that can be said first, then ever less, for less room.
 pub fn foot(status: &NodeStatus) -> Vec<String> {
     let word = match &status.state {
@@ -34,13 +37,13 @@ pub fn foot(status: &NodeStatus) -> Vec<String> {
 /// "gpu 12 ms" and "cpu 30 ms", as far as there are such.
 fn times(status: &NodeStatus) -> Vec<String> {
     let parts = [("gpu", status.gpu_ms), ("cpu", status.cpu_ms)];
-    parts.into_iter().filter(|(_, ms)| *ms > 0.0).map(|(of, ms)| format!("{of} {}", time(ms))).collect()
+    parts.into_iter().filter(|(_, ms)| *ms >= LEAST_MS).map(|(of, ms)| format!("{of} {}", time(ms))).collect()
 }
 
 /// The time of the one that took longer: both wait for the other.
 fn longest(status: &NodeStatus) -> String {
     let ms = status.gpu_ms.max(status.cpu_ms);
-    if ms > 0.0 { time(ms) } else { String::new() }
+    if ms >= LEAST_MS { time(ms) } else { String::new() }
 }
 
 /// "3.4 MiB"; nothing of nothing.

@@ -61,7 +61,7 @@ fn row(
             done
         });
         for (sign, what, is) in
-            [("⏶", "up", Change::Up), ("⏷", "down", Change::Down), ("✕", "remove", Change::Remove)]
+            [("⏶", "up", Change::Up), ("⏷", "down", Change::Down), ("×", "remove", Change::Remove)]
         {
             let button = ui.small_button(sign);
             named(&button, &format!("{label} {what}"));
@@ -69,7 +69,6 @@ fn row(
                 change = Some(is);
             }
         }
-        ui.weak(kind.map_or("unknown".to_owned(), |spec| spec.kind.to_string()));
         refused
     });
     if let Some(reason) = refused.inner {
@@ -77,7 +76,8 @@ fn row(
     }
     ui.horizontal_wrapped(|ui| {
         ui.add_space(12.0);
-        ui.weak("stands for");
+        let kind = kind.map_or("unknown".to_owned(), |spec| spec.kind.to_string());
+        ui.weak(format!("{kind}, stands for"));
         for end in ends {
             asked = link(ui, path, end).or(asked.take());
         }

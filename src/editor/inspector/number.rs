@@ -46,8 +46,9 @@ pub fn entry(
     let mut text = draft.as_ref().map_or(current, |draft| &draft.text).to_owned();
     let is_refused = draft.as_ref().is_some_and(|draft| draft.message.is_some());
     let color = is_refused.then(|| ui.visuals().error_fg_color);
-    let edit = TextEdit::singleline(&mut text).id(id).desired_width(width).text_color_opt(color);
-    let response = ui.add(edit);
+    let edit = TextEdit::singleline(&mut text).id(id).desired_width(f32::INFINITY).text_color_opt(color);
+    // With its margins, so that what stands after it has the room that it was left.
+    let response = ui.add_sized(egui::vec2(width, ui.spacing().interact_size.y), edit);
     named(&response, name);
     if response.gained_focus() {
         select_all(ui, id, &text);

@@ -153,7 +153,7 @@ mod tests {
             let page = |ui: &mut Ui, start: &mut Start| {
                 egui::CentralPanel::default().show(ui, |ui| drop(start.show(ui, &presets, &recent)));
             };
-            let builder = Harness::builder().with_size(vec2(560.0, 560.0));
+            let builder = Harness::builder().with_size(vec2(600.0, 460.0));
             let mut harness = builder.build_ui_state(page, Start::default());
             theme::apply(&harness.ctx, theme.into());
             harness.run_steps(3);

@@ -67,12 +67,6 @@ fn snapshot_of_the_canvas() {
         harness.run_steps(3);
         assert_looks(&mut harness, name);
     }
-    let mut bench = Bench::new(Document::parse(super::groups::GROUPS, Path::new("")).unwrap());
-    bench.canvas.reveal("group/x");
-    let builder = Harness::builder().with_size(Vec2::new(480.0, 200.0)).with_theme(egui::Theme::Dark);
-    let mut harness = builder.build_ui_state(|ui, bench: &mut Bench| bench.show(ui), bench);
-    harness.run_steps(3);
-    assert_looks(&mut harness, "canvas_group");
 }
 
 /// Writes pictures to look at; `cargo test canvas::tests::looks -- --ignored`.
