@@ -189,15 +189,19 @@ fn largest(spots: Vec<Spot>) -> Option<Spot> {
     spots.into_iter().max_by_key(|spot| spot.size()[0] * spot.size()[1])
 }
 
+/// The headers of the lights' nodes, but for one.
+fn lights<'a>(screen: &Screen, but: &'a Spot) -> impl Iterator<Item = Spot> + use<'a> {
+    let headers = screen.spots(LIGHT).into_iter();
+    headers.filter(|spot| spot.size()[0] > 30 && !but.contains(spot.center()))
+}
+
 /// Draws a wire from the new node, which is selected, to the split.
 fn wire_to_split(desk: &Desk) {
     let screen = desk.screen();
     let new = largest(screen.spots(SELECTED)).expect("the new node is selected");
     // A wire that ends on a node finds the port that fits. Of the nodes with a light's header the split is the
     // rightmost.
-    let headers = screen.spots(LIGHT).into_iter();
-    let headers = headers.filter(|spot| spot.size()[0] > 30 && !new.contains(spot.center()));
-    let split = headers.max_by_key(|spot| spot.min[0]).expect("the split");
+    let split = lights(&screen, &new).max_by_key(|spot| spot.min[0]).expect("the split");
     // Its only row holds its output: header 42, pad 5 and half a row of 20, of 92 points in all.
     let from = [new.max[0] - 2, new.min[1] + (new.size()[1] * 57 + 46) / 92];
     let [to_x, to_y] = split.center();
@@ -279,11 +283,17 @@ fn a_volume_is_dropped_and_its_graph_changed_saved_and_opened_again() {
     });
     let wired = read();
 
-    // The slider of the new sun, which is still selected.
+    // The slider of the first sun, the topmost light; the new one's is at its least, where nothing is filled.
+    let screen = desk.screen();
+    let new = largest(screen.spots(SELECTED)).expect("the new node is selected");
+    let sun = lights(&screen, &new).min_by_key(|spot| spot.min[1]).expect("the first sun");
+    desk.hover(sun.center());
+    desk.xdotool(&["click", "1"]);
+    std::thread::sleep(Duration::from_secs(1));
     desk.until("the slider", || {
         slide(&desk);
         desk.key("ctrl+s");
-        read()["nodes"]["sun_2"] != wired["nodes"]["sun_2"]
+        read()["nodes"]["sun"] != wired["nodes"]["sun"]
     });
     let slid = read();
     assert_eq!(slid["wires"], wired["wires"]);

@@ -71,10 +71,8 @@ impl Screen {
             let mut stack = vec![start];
             while let Some(n) = stack.pop() {
                 let at = [n % width, n / width];
-                for axis in 0..2 {
-                    spot.min[axis] = spot.min[axis].min(at[axis]);
-                    spot.max[axis] = spot.max[axis].max(at[axis] + 1);
-                }
+                spot.min = [spot.min[0].min(at[0]), spot.min[1].min(at[1])];
+                spot.max = [spot.max[0].max(at[0] + 1), spot.max[1].max(at[1] + 1)];
                 for [dx, dy] in [[-1, 0], [1, 0], [0, -1], [0, 1], [-1, -1], [1, 1], [-1, 1], [1, -1]] {
                     let next = [at[0] + dx, at[1] + dy];
                     let n = next[1] * width + next[0];
