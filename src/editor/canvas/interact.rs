@@ -155,7 +155,7 @@ impl Canvas {
         let picture = desk.thumbnail(&shape.name).map(egui::TextureHandle::id);
         brush.node(shape, status, look, picture);
         if matches!(status.state, super::super::NodeState::Running) {
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(500));
         }
         for (port, look) in shape.ports.iter().zip(looks) {
             let is_faint = shape.mute && look == node::PortLook::Plain;
