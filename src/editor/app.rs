@@ -234,7 +234,7 @@ impl App {
             ui.ctx().request_repaint_after_secs((0.5 / self.settings.fps) as f32);
         }
         // What has keys is shown and set as it is at the frame.
-        self.project.look_at(self.has_frames().then_some(self.player.frame));
+        self.project.look_at(self.asks_frame());
     }
 
     fn page(&mut self, ui: &mut Ui) {

@@ -49,7 +49,7 @@ pub(super) const BEAM: ParamSpec = ParamSpec::int("beam", 0)
     .doc("Which of the beams, from 0; of other inputs it says nothing. Where a surface hides the light, tau is the largest of elsewhere.");
 
 /// Corners that a surface hides hold a depth that no walk gives (`shaders/lib/shadow.wgsl`).
-const HIDDEN: f32 = 65_504.0 - 32.0;
+const HIDDEN: f32 = f16::MAX.to_f32_const() - 32.0;
 
 impl Scalar {
     /// Of the one input that is wired.

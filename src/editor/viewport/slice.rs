@@ -14,11 +14,11 @@ mod legend;
 mod space;
 mod strip;
 
-use egui::{TextureHandle, TextureOptions, Ui};
+use egui::{Align2, Rect, TextureHandle, TextureOptions, Ui, vec2};
 use glam::DVec3;
 use serde_json::{Value as Json, json};
 
-use super::overlay::short;
+use super::overlay::{self, short};
 use super::place::Place;
 use crate::graph::{Document, End, Node, PortType, Value, Wire};
 use crate::image::{Table, colormap};
@@ -249,6 +249,27 @@ impl Slice {
             None => ui.ctx().load_texture(NAME, pixels, TextureOptions::LINEAR),
         };
         self.texture = Some((cut.image.clone(), texture));
+    }
+
+    /// The legend, and value and place at this share of the plane, so far above the area's lower edge.
+    fn tell(
+        &self,
+        ui: &mut Ui,
+        area: Rect,
+        document: &Document,
+        cut: &Cut,
+        share: Option<[f64; 2]>,
+        above: f32,
+    ) {
+        let value = share.and_then(|share| cut.value(share));
+        let quantity = self.quantity(document);
+        if let (Some(share), Some(value)) = (share, value) {
+            let text = readout(&quantity, value, cut.plane.at(share));
+            let corner = area.right_bottom() + vec2(-10.0, -above);
+            overlay::pill(ui, "slice value", corner, Align2::RIGHT_BOTTOM, &text);
+        }
+        let names = [quantity[0].as_str(), quantity[1].as_str()];
+        legend::show(ui, area, self.colormap, names, cut.plane.range, value);
     }
 
     /// What the numbers are, and their unit; empty where nobody knows.

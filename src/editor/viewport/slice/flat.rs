@@ -43,20 +43,7 @@ pub fn show(slice: &mut Slice, ui: &mut Ui, area: Rect, response: &Response, doc
         let share = (at - rect.min) / rect.size();
         [f64::from(share.x), f64::from(share.y)]
     });
-    let value = share.and_then(|share| cut.value(share));
-    let quantity = slice.quantity(document);
-    if let (Some(share), Some(value)) = (share, value) {
-        let text = super::readout(&quantity, value, plane.at(share));
-        overlay::pill(
-            ui,
-            "slice value",
-            area.right_bottom() + vec2(-10.0, -10.0),
-            Align2::RIGHT_BOTTOM,
-            &text,
-        );
-    }
-    let names = [quantity[0].as_str(), quantity[1].as_str()];
-    super::legend::show(ui, area, slice.colormap, names, plane.range, value);
+    slice.tell(ui, area, document, cut, share, 10.0);
     if let Some(problem) = &slice.problem {
         overlay::problem(ui, area, "The slice plane", problem);
     }

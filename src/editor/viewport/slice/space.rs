@@ -5,8 +5,7 @@
 //! does: what of the medium stands before it does not hide it.
 
 use egui::{
-    Align2, Color32, CursorIcon, Mesh, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo,
-    WidgetType, vec2,
+    Color32, CursorIcon, Mesh, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, WidgetInfo, WidgetType, vec2,
 };
 
 use super::Slice;
@@ -63,20 +62,7 @@ pub fn show(
         painter.add(Shape::closed_line(outline, Stroke::new(1.0, Color32::from_white_alpha(150))));
     }
     let share = response.hover_pos().filter(|at| rect.contains(*at)).and_then(|at| plane.hit(lens.ray(at)));
-    let value = share.and_then(|share| cut.value(share));
-    let quantity = slice.quantity(document);
-    if let (Some(share), Some(value)) = (share, value) {
-        let text = super::readout(&quantity, value, plane.at(share));
-        overlay::pill(
-            ui,
-            "slice value",
-            area.right_bottom() + vec2(-10.0, -40.0),
-            Align2::RIGHT_BOTTOM,
-            &text,
-        );
-    }
-    let names = [quantity[0].as_str(), quantity[1].as_str()];
-    super::legend::show(ui, area, slice.colormap, names, plane.range, value);
+    slice.tell(ui, area, document, cut, share, 40.0);
     handle(slice, ui, area.intersect(rect), lens);
 }
 
