@@ -11,9 +11,9 @@
 #import "lib/beam.wgsl"
 #import "lib/layered.wgsl"
 #import "lib/lobe.wgsl"
-#import "lib/transmittance.wgsl"
 #import "lib/emission.wgsl"
 #import "raymarch/channels_{channels}.wgsl"
+#import "raymarch/residual_{channels}.wgsl"
 #import "lib/surface_beam.wgsl"
 #import "lib/surface_light.wgsl"
 #import "lib/bvh.wgsl"
@@ -104,6 +104,7 @@ struct Pixel {
 @group(1) @binding(17) var star: texture_3d<f32>;
 @group(1) @binding(18) var radial: texture_3d<f32>;
 @group(1) @binding(19) var<storage, read> radial_lights: array<RadialLight>;
+@group(1) @binding(20) var sums: texture_3d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Where less than this is left of a ray it ends.
@@ -129,6 +130,8 @@ const HAS_RADIAL: bool = {radial};
 const HAS_WIDENING: bool = {widening};
 const HAS_EMISSION: bool = {emission};
 const HAS_BEAMS: bool = {beams};
+// Whether the beams were gathered at corners for this view.
+const HAS_SUMS: bool = {sums};
 // Whether lobes have a direction; where g is 0 they have none.
 const HAS_LOBES: bool = {lobes};
 // Whether there are empty blocks to pass.
@@ -214,7 +217,12 @@ fn march(direction: vec3f, until: f32) -> Layers {
         let tau_c = layers.tau + dot(seen, vec2f(0.5 * step_tau.x, step_tau.x + 0.5 * step_tau.y));
         let segment = Segment(sharp - end, near + far, tau_c, 2.0 * dt);
         if HAS_BEAMS {
-            let scattered = scatter_beams(segment, p, direction);
+            var scattered: Scattered;
+            if HAS_SUMS {
+                scattered = scatter_sums(segment, p);
+            } else {
+                scattered = scatter_beams(segment, p, direction);
+            }
             layers.single += scattered.single;
             layers.forward += scattered.forward;
         }

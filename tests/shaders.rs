@@ -32,6 +32,8 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("narrow", SWITCH),
     ("emission", SWITCH),
     ("beams", SWITCH),
+    ("sums", SWITCH),
+    ("grey", SWITCH),
     ("lobes", SWITCH),
     ("skips", SWITCH),
     ("skips_dark", SWITCH),
@@ -78,7 +80,7 @@ fn with_imports(name: &str) -> String {
     let mut text = String::new();
     let mut to_read = vec![name.to_owned()];
     while let Some(name) = to_read.pop() {
-        let name = name.replace("{channels}", "1").replace("{pack}", "1").replace("{walls}", "true");
+        let name = name.replace("{channels}", "3").replace("{pack}", "1").replace("{walls}", "true");
         let file = shader_text(&name).unwrap();
         let imports = file.lines().filter_map(|line| line.strip_prefix("#import "));
         to_read.extend(imports.map(|import| import.trim().trim_matches('"').to_owned()));

@@ -13,14 +13,15 @@ fn depth_between(a: f32, b: f32) -> f32 {
 // edge of a shadow crosses the cell, the mean over the corners, of which the hidden ones have no light.
 fn cell_mean(t: array<f32, 8>, k: f32, axis: u32) -> f32 {
     var corners = t;
-    var n_lit = 0.0;
-    var lit = 0.0;
+    var n_lit = 0u;
     for (var n = 0u; n < 8u; n += 1u) {
-        let sees_light = !is_hidden(corners[n]);
-        n_lit += select(0.0, 1.0, sees_light);
-        lit += select(0.0, exp(-k * corners[n]), sees_light);
+        n_lit += select(1u, 0u, is_hidden(corners[n]));
     }
-    if n_lit < 8.0 {
+    if n_lit < 8u {
+        var lit = 0.0;
+        for (var n = 0u; n < 8u; n += 1u) {
+            lit += select(exp(-k * corners[n]), 0.0, is_hidden(corners[n]));
+        }
         return lit / 8.0;
     }
     let first = 1u << axis;

@@ -1,4 +1,4 @@
-// A thread: what beams and emission give to one cell and channel, Q0 and Q1 [W/m3] (DESIGN 6.3).
+// A thread: what beams and emission give to one cell, Q0 and Q1 [W/m3] of each channel (DESIGN 6.3).
 
 #import "isotropic_residual/common.wgsl"
 #import "isotropic_residual/cell_mean.wgsl"
@@ -43,18 +43,15 @@ fn mean_inverse_square(cell: vec3f, position: vec3f, cell_m: f32) -> f32 {
 @compute @workgroup_size(8, 8, 1)
 fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
     let level = params.level;
-    if any(id.xy >= level.dims.xy) || id.z >= level.dims.z * level.n_channels {
+    if any(id >= level.dims) {
         return;
     }
-    let c = id.z / level.dims.z;
-    let cell = vec3u(id.xy, id.z % level.dims.z);
-    let channel = level.channels[c];
-    let extinction = textureLoad(sigma_t, cell, 0).x;
-    var total = vec4f(0.0);
+    let extinction = textureLoad(sigma_t, id, 0).x;
+    var totals: array<vec4f, 3>;
     if extinction > 0.0 {
         let corners = level.dims + 1u;
         for (var first = 0u; first < params.n_beams; first += PACK) {
-            let origin = pack_origin(first / PACK, corners, params.packs_per_column) + cell;
+            let origin = pack_origin(first / PACK, corners, params.packs_per_column) + id;
             var depths: array<vec4f, 8>;
             for (var n = 0u; n < 8u; n += 1u) {
                 depths[n] = textureLoad(tau, origin + vec3u(n & 1u, (n >> 1u) & 1u, n >> 2u), 0);
@@ -69,21 +66,33 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
                 var axis = largest_axis(direction);
                 var spreading = 1.0;
                 if beam.place.w > 0.0 {
-                    let line = vec3f(cell) - beam.place.xyz;
+                    let line = vec3f(id) - beam.place.xyz;
                     direction = line / max(length(line), 1e-6);
                     axis = largest_axis(0.5 * vec3f(level.dims) - 0.5 - beam.place.xyz);
-                    spreading = emission_along(beam, direction) * mean_inverse_square(vec3f(cell), beam.place.xyz, level.cell_m);
+                    spreading = emission_along(beam, direction) * mean_inverse_square(vec3f(id), beam.place.xyz, level.cell_m);
                 }
-                let mean = beam.power[c] * spreading * cell_mean(one, channel.k, axis);
-                total += mean * vec4f(1.0, level.g_star * beam.power.w * direction);
+                let travel = vec4f(1.0, level.g_star * beam.power.w * direction);
+                // Where matter is grey one mean serves all channels.
+                var mean = 0.0;
+                var k_of_mean = -1.0;
+                for (var c = 0u; c < level.n_channels; c += 1u) {
+                    if level.channels[c].k != k_of_mean {
+                        k_of_mean = level.channels[c].k;
+                        mean = cell_mean(one, k_of_mean, axis);
+                    }
+                    totals[c] += beam.power[c] * spreading * mean * travel;
+                }
             }
         }
     }
-    total *= extinction * channel.scatter;
+    var eps = vec4f(0.0);
     if HAS_EMISSION {
-        // Into all directions alike, in void too.
-        let eps = textureLoad(emission, cell, 0);
-        total.x += FOUR_PI * eps[c];
+        eps = textureLoad(emission, id, 0);
     }
-    textureStore(sources, id, total);
+    for (var c = 0u; c < level.n_channels; c += 1u) {
+        var total = extinction * level.channels[c].scatter * totals[c];
+        // Into all directions alike, in void too.
+        total.x += FOUR_PI * eps[c];
+        textureStore(sources, vec3u(id.xy, id.z + c * level.dims.z), total);
+    }
 }

@@ -1,9 +1,8 @@
 // Light of the beams that a stretch of a view ray sends to the eye (DESIGN 6.5): scattered once, and what
-// the forward peak adds to it (table K).
+// the forward peak adds to it. Beam by beam, or from their sums at corners (raymarch/gather.wgsl).
 
-// The table of K: columns 255 sqrt(sin(theta/2)), rows 63 sqrt(x/60).
-const PEAK_SIZE: vec2f = vec2f(256.0, 64.0);
-const PEAK_X_MAX: f32 = 60.0;
+#import "raymarch/towards_eye.wgsl"
+
 // Radius of the ball that has the volume of a cube, over the cube's edge.
 const BALL_PER_EDGE: f32 = 0.62;
 
@@ -22,18 +21,6 @@ struct Segment {
 struct Scattered {
     single: Spectrum,
     forward: Spectrum,
-}
-
-// K of one channel at x = albedo (tau_n + tau_c) and this column.
-fn forward_peak(x: f32, column: f32) -> f32 {
-    let row = sqrt(clamp(x, 0.0, PEAK_X_MAX) / PEAK_X_MAX) * (PEAK_SIZE.y - 1.0);
-    return textureSampleLevel(peak, linear_clamp, (vec2f(column, row) + 0.5) / PEAK_SIZE, 0.0).x;
-}
-
-// What of the phase function is as even as the residual's sources: it stays with the ordinates.
-fn even_phase(mu: f32) -> f32 {
-    let f = params.g * params.g;
-    return max(0.0, (1.0 - f) + 3.0 * (params.g - f) * mu) / FOUR_PI;
 }
 
 // The light of a segment whose point is p, towards the eye of a ray with this direction.
@@ -101,29 +88,40 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
             let mu = clamp(-dot(travel, direction), -1.0, 1.0);
             let unscattered = share[m] * segment.sharp * exp(-tau_n);
             // E* over E_n, and the depth that K is for.
-            var reaching = share[m] * exp(-k * tau_n);
+            var reaching = share[m] * exp_of(-k * tau_n);
             if HAS_WIDENING {
-                reaching = star_share[m] * exp(-k * stars[m]);
+                reaching = star_share[m] * exp_of(-k * stars[m]);
                 tau_n = select(stars[m], tau_n, share[m] > 0.0);
             }
-            var phase = henyey_greenstein(mu, params.g * beam.power.w);
+            let phases = phases_towards_eye(beam, mu, tau_n + segment.tau_c);
             if HAS_PEAK {
-                let column = (PEAK_SIZE.x - 1.0) * sqrt(sqrt(0.5 - 0.5 * mu));
                 let deflected = max(segment.reach * reaching - unscattered, Spectrum(0.0));
-                var peak_phase = peak_of(albedo * (tau_n + segment.tau_c), column);
-                if HAS_WINDOW {
-                    let part = saturate((mu - beam.window.y) / max(beam.window.x - beam.window.y, 1e-6));
-                    let kept = 1.0 - part * part * (3.0 - 2.0 * part);
-                    let even = even_phase(mu);
-                    phase = even + kept * (phase - even);
-                    peak_phase = even + kept * (peak_phase - even);
-                }
-                scattered.forward += power * deflected * peak_phase;
+                scattered.forward += power * deflected * phases.peak;
             }
-            scattered.single += power * unscattered * phase;
+            scattered.single += power * unscattered * phases.single;
         }
     }
     scattered.single *= albedo;
     scattered.forward *= albedo;
+    return scattered;
+}
+
+// The same from sums at the corners of cells, whose logarithms are linear between them.
+fn scatter_sums(segment: Segment, p: vec3f) -> Scattered {
+    var single = vec3f(0.0);
+    var reaching = vec3f(0.0);
+    var unscattered = vec3f(0.0);
+    for (var c = 0u; c < {channels}u; c += 1u) {
+        let sum = exp(layered(sums, linear_clamp, {channels}u, c, p + 0.5).xyz);
+        single[c] = sum.x;
+        reaching[c] = sum.y;
+        unscattered[c] = sum.z;
+    }
+    let albedo = params.albedo;
+    let deflected = segment.reach * spectrum(vec4f(reaching, 0.0)) - segment.sharp * spectrum(vec4f(unscattered, 0.0));
+    var scattered: Scattered;
+    scattered.single = spectrum(albedo) * (segment.sharp * spectrum(vec4f(single, 0.0)));
+    // More light counts as not scattered than is not: less than none is rounding.
+    scattered.forward = spectrum(albedo) * max(deflected, Spectrum(0.0));
     return scattered;
 }

@@ -1,18 +1,27 @@
 // What a march evaluates for each channel: here for three.
 
+#import "lib/transmittance.wgsl"
+
 // (1 - exp(-x)) / x, where the exponential is known.
 fn per_channel_mean(x: Spectrum, exp_x: Spectrum) -> Spectrum {
     let thin = vec3f(thin_transmittance(x.x), thin_transmittance(x.y), thin_transmittance(x.z));
     return select((1.0 - exp_x) / max(x, vec3f(1e-3)), thin, x < vec3f(0.1));
 }
 
+// Whether matter is the same in all channels.
+const IS_GREY: bool = {grey};
+
 fn peak_of(x: Spectrum, column: f32) -> Spectrum {
+    if IS_GREY {
+        return Spectrum(forward_peak(x.x, column));
+    }
     return vec3f(forward_peak(x.x, column), forward_peak(x.y, column), forward_peak(x.z, column));
 }
 
-fn residual_of(p: vec3f, view: vec3f) -> Spectrum {
-    if params.residual_channels == 1u {
-        return params.residual_color.xyz * residual_radiance(p, view, 0u);
+// Of what is as grey as matter.
+fn exp_of(x: Spectrum) -> Spectrum {
+    if IS_GREY {
+        return Spectrum(exp(x.x));
     }
-    return vec3f(residual_radiance(p, view, 0u), residual_radiance(p, view, 1u), residual_radiance(p, view, 2u));
+    return exp(x);
 }

@@ -19,6 +19,7 @@ const ON_CPU: &[(&str, f64)] = &[
     ("isotropic_residual/gather_moments", 2.4),
     ("isotropic_residual/lobe", 1.3),
     ("isotropic_residual/prolong", 1.4),
+    ("raymarch/gather", 2.0),
     ("raymarch", 1.1),
 ];
 

@@ -49,6 +49,8 @@ pub struct Beams {
     /// Whether surfaces were in the way: only then are corners of the atlas marked as hidden
     /// (`shaders/lib/shadow.wgsl`).
     pub has_shadows: bool,
+    /// Whether their forward peaks widen as they go.
+    pub widens: bool,
     /// Depths by which E\* = E exp(−k tau) where the peak widens; without them, those of `tau`.
     pub peak: Option<TauAtlas>,
     /// The last so many of the beams have no depths at corners, but on grids of their own.
@@ -231,6 +233,7 @@ impl Beams {
             ambient: [0.0; 3],
             lattice: lattice.clone(),
             has_shadows: false,
+            widens: false,
             peak: None,
             n_radial: 0,
             radial: None,
@@ -283,6 +286,12 @@ impl Beams {
         }
         self.radial = Some(RadialGrids::merge(gpu, &grids)?);
         Ok(self)
+    }
+
+    /// Whether all are parallel, lit by one depth at each corner.
+    pub fn is_plain(&self) -> bool {
+        let is_parallel = |beam: &Beam| matches!(beam.place, Place::Parallel(_));
+        !self.has_shadows && !self.widens && self.beams.iter().all(is_parallel)
     }
 
     /// Beams whose depths stand at corners.
@@ -370,6 +379,7 @@ impl Beams {
         let has_peak = parts.iter().any(|part| part.peak.is_some());
         let peak = if has_peak { Some(joined(|depths| &depths.star)?) } else { None };
         let has_shadows = parts.iter().any(|part| part.has_shadows);
-        Ok(Self { tau, peak, has_shadows, ..Self::new(lattice, beams) })
+        let widens = parts.iter().any(|part| part.widens);
+        Ok(Self { tau, peak, has_shadows, widens, ..Self::new(lattice, beams) })
     }
 }

@@ -61,7 +61,7 @@ pub(super) fn sources(
     let [pack, format] = depths.tau.choices();
     let choices = [pack, format, ("emission", medium.emission.is_some().to_string())];
     let stage = gpu.stage("isotropic_residual/sources", &choices)?;
-    recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), layers);
+    recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), dims);
     run.finish(recorder)?;
     let field = super::radial::add(run, medium, beams, channels, problem, field)?;
     with_sums(run, problem, &level, field)

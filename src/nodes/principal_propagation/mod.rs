@@ -135,6 +135,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         };
         if widens {
             let surfaces = Surfaces::new(run.gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
+            carried.widens = true;
             carried.peak = Some(widening::widen(run, medium, &carried.beams, &tau, &surfaces)?);
         }
         carried.has_shadows = shadow::cast(run, medium, &carried.beams, &tau)?;
@@ -158,6 +159,7 @@ fn foretell(run: &Run) -> Result<Vec<Value>, NodeError> {
         let plan = plan(run)?;
         run.tell(plan.report);
         beams.beams = plan.beams;
+        beams.widens = plan.is_carried && plan.widens;
         beams.has_shadows = plan.is_carried && shadow::is_cast(run);
     }
     Ok(vec![Value::new(PortType::Beams, 0, beams)])

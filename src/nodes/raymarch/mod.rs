@@ -26,6 +26,7 @@ mod layers;
 #[cfg(test)]
 pub(super) mod oracle;
 mod plan;
+mod sums;
 
 pub(super) const KIND: NodeKind =
     NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::Foretold(foretell) };
@@ -140,6 +141,10 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let [light, corners] = gathered.map_or([Bind::Buffer(&nothing); 2], SurfaceLight::binds);
     let [nodes, triangles] = gathered.map_or(&surfaces, SurfaceLight::surfaces).binds();
     let (radial, radial_lights) = beams.radial_binds(gpu)?;
+    let sums = match plan.has_sums {
+        true => sums::gather(run, &plan, &beams, [&depths.tau.texture, &table], &list, &params)?,
+        false => gpu.texture3("no sums of beams", [1; 3], Format::Rgba32Float, "")?,
+    };
     let inputs = [
         Bind::Texture(&medium.sigma_t),
         Bind::Sampler(&clamp),
@@ -161,6 +166,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&depths.star.texture),
         Bind::Texture(&radial),
         Bind::Buffer(&radial_lights),
+        Bind::Texture(&sums),
     ];
 
     let stage = gpu.stage("raymarch", &choices(&plan, medium, &beams, residual, &backdrop, &surfaces))?;
@@ -195,9 +201,8 @@ fn choices(
     residual: Option<&Residual>,
     backdrop: &Backdrop,
     surfaces: &Surfaces,
-) -> [(&'static str, String); 18] {
+) -> [(&'static str, String); 20] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
-    let window = beams.beams.iter().any(|beam| beam.window.is_some());
     let gathered = residual.and_then(|residual| residual.surface_light.as_ref());
     let n_beams = match beams.beams.len() {
         n @ ..=4 => format!("{n}u"),
@@ -205,10 +210,11 @@ fn choices(
     };
     [
         ("channels", plan.channels.count.to_string()),
+        ("grey", is_grey(medium).to_string()),
         ("voxels", medium.homogeneous.is_none().to_string()),
         ("points", points.to_string()),
         ("peak", plan.has_peak.to_string()),
-        ("window", window.to_string()),
+        ("window", has_window(beams).to_string()),
         ("residual", plan.has_residual.to_string()),
         ("stack", backdrop.has_stack.to_string()),
         ("surfaces", (!surfaces.is_empty()).to_string()),
@@ -218,11 +224,22 @@ fn choices(
         ("widening", beams.peak.is_some().to_string()),
         ("emission", medium.emission.is_some().to_string()),
         ("beams", plan.has_beams.to_string()),
+        ("sums", plan.has_sums.to_string()),
         ("lobes", plan.has_lobes.to_string()),
         ("skips", plan.skips.to_string()),
         ("n_beams", n_beams),
         ("pack", beams.pack().to_string()),
     ]
+}
+
+/// Whether matter is the same in all channels.
+fn is_grey(medium: &Medium) -> bool {
+    medium.albedo.iter().all(|albedo| *albedo == medium.albedo[0])
+}
+
+/// Whether some of the beams leave light to the environment's stack.
+fn has_window(beams: &Beams) -> bool {
+    beams.beams.iter().any(|beam| beam.window.is_some())
 }
 
 /// The report of a run; of the picture only that there will be one.

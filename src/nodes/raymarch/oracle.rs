@@ -16,6 +16,8 @@
 //! Limits: one table of K for all spreads a0; no environment stack; near a point light r⁻²
 //! is that of the pair. Tested with closed forms; as a chain in `oracle_scene/tests.rs`.
 
+pub mod sums;
+
 use std::f64::consts::PI;
 
 use glam::{DVec3, DVec4};
@@ -104,6 +106,19 @@ pub fn march_through(
     sigma_t_at: impl Fn(DVec3) -> f64,
     tau_to_light: impl Fn(usize, DVec3) -> f64,
 ) -> Marched {
+    let beams_at =
+        |p: DVec3, segment: &Segment| light_of_beams(scene, ray.direction, p, segment, &tau_to_light);
+    march_with(scene, ray, interval, sigma_t_at, beams_at)
+}
+
+/// The same, with what beams send to the eye from a segment given: scattered once, and what the peak adds.
+fn march_with(
+    scene: &MarchScene,
+    ray: &Ray,
+    interval: Option<[f64; 2]>,
+    sigma_t_at: impl Fn(DVec3) -> f64,
+    beams_at: impl Fn(DVec3, &Segment) -> [f64; 2],
+) -> Marched {
     let mut seen = Marched::default();
     let scaled = scene.medium.scaled();
     if let Some([start, end]) = interval {
@@ -134,7 +149,10 @@ pub fn march_through(
             if toward[0] > 0.0 {
                 segment.tau_c = toward[2] / toward[0];
                 let p = ray.origin + ray.direction * (toward[1] / toward[0]);
-                add_light(&mut seen, scene, ray.direction, p, &segment, &tau_to_light);
+                let [single, forward] = beams_at(p, &segment);
+                seen.single += single;
+                seen.forward += forward;
+                seen.residual += segment.reach * residual_at(scene, p, ray.direction);
             }
         }
     }
@@ -155,17 +173,16 @@ struct Segment {
     length_m: f64,
 }
 
-/// Adds what the beams and the residual send from a segment whose point is `p`.
-fn add_light(
-    seen: &mut Marched,
+/// What all beams send along a ray from a segment whose point is `p`: scattered once, and what the peak adds.
+fn light_of_beams(
     scene: &MarchScene,
     ray_direction: DVec3,
     p: DVec3,
     segment: &Segment,
     tau_to_light: impl Fn(usize, DVec3) -> f64,
-) {
+) -> [f64; 2] {
     let medium = scene.medium;
-    let scaled = medium.scaled();
+    let mut sums = [0.0; 2];
     for (index, beam) in scene.beams.iter().enumerate() {
         let irradiance = match beam.light {
             BeamLight::Parallel { irradiance, .. } => irradiance,
@@ -173,24 +190,36 @@ fn add_light(
                 intensity * inverse_square((p - position_in_index).length() * medium.h, segment.length_m)
             }
         };
-        let mu = -beam.light.direction_at(p).dot(ray_direction);
         let tau_n = tau_to_light(index, p);
         let unscattered = segment.sharp * (-tau_n).exp();
-        let deflected = (segment.reach * (-scaled.k * tau_n).exp() - unscattered).max(0.0);
-        let peak = peak::lookup(scene.peak_table, medium.albedo * (tau_n + segment.tau_c), mu);
-        let power = medium.albedo * irradiance;
-        let kept = |phase: f64| match beam.window {
-            Some(window) if medium.g > 0.0 => without_forward(phase, mu, medium.g, window),
-            _ => phase,
-        };
-        seen.single += power * unscattered * kept(hg(mu, medium.g * beam.light.spread()));
-        seen.forward += power * deflected * kept(peak);
+        let deflected = (segment.reach * (-medium.scaled().k * tau_n).exp() - unscattered).max(0.0);
+        let [single, peak] = phases(scene, beam, p, ray_direction, tau_n + segment.tau_c);
+        sums[0] += medium.albedo * irradiance * unscattered * single;
+        sums[1] += medium.albedo * irradiance * deflected * peak;
     }
+    sums
+}
+
+/// HG and K [1/sr] of a beam at `p` towards the eye of a ray, less what its window leaves to the environment's
+/// stack; `depth` is tau_n + tau_c.
+fn phases(scene: &MarchScene, beam: &OracleBeam, p: DVec3, ray_direction: DVec3, depth: f64) -> [f64; 2] {
+    let medium = scene.medium;
+    let mu = -beam.light.direction_at(p).dot(ray_direction);
+    let peak = peak::lookup(scene.peak_table, medium.albedo * depth, mu);
+    let kept = |phase: f64| match beam.window {
+        Some(window) if medium.g > 0.0 => without_forward(phase, mu, medium.g, window),
+        _ => phase,
+    };
+    [kept(hg(mu, medium.g * beam.light.spread())), kept(peak)]
+}
+
+/// The residual's radiance per unit of optical depth, along a ray.
+fn residual_at(scene: &MarchScene, p: DVec3, ray_direction: DVec3) -> f64 {
+    let scaled = scene.medium.scaled();
     let light = scene.residual.trilinear_clamp(p);
     let flux = DVec3::new(light.y, light.z, light.w);
     let ratio = scaled.sigma_s_ratio;
-    let lobe = SquaredLinearLobe::new(ratio * light.x, ratio * scaled.g_star * flux);
-    seen.residual += segment.reach * lobe.eval(-ray_direction);
+    SquaredLinearLobe::new(ratio * light.x, ratio * scaled.g_star * flux).eval(-ray_direction)
 }
 
 /// A phase function less what the environment's stack carries of it: W + (phase − W)(1 − w(mu)), W the part as

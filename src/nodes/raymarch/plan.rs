@@ -7,14 +7,16 @@ use super::layers::Pixel;
 use crate::camera::Camera;
 use crate::graph::{NodeError, Report, StageWork};
 use crate::optics::delta::DeltaScaled;
-use crate::planner::{self, Colors};
+use crate::planner::{self, Colors, Gathering};
 use crate::wire::{Beam, Beams, Channels, Medium, Place, Residual};
 
 /// What is done.
 pub(super) struct Plan {
     pub(super) channels: Channels,
-    /// Whether light of beams is looked up.
+    /// Whether light of beams is seen.
     pub(super) has_beams: bool,
+    /// Whether it is gathered at corners first.
+    pub(super) has_sums: bool,
     pub(super) has_peak: bool,
     pub(super) has_residual: bool,
     /// Whether lobes have a direction.
@@ -72,6 +74,7 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
     let mut plan = Plan {
         channels,
         has_beams,
+        has_sums: false,
         has_peak: has_beams && has_peak,
         has_residual,
         has_lobes,
@@ -80,43 +83,66 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
     };
     let n_sub = (run.params.i64("samples") as f64).sqrt().ceil();
     let n_pixels = camera.width * camera.height;
-    let of_ray = probe(medium, camera, run.params.f64("step"))?;
-    let of_lit = bytes_of_a_lit_pair(&plan, medium, &beams, residual);
-    let moved = of_ray.lit * of_lit + of_ray.void * BYTES_OF_A_VOID_PAIR;
+    let pixels = (n_pixels * size_of::<Pixel>()) as f64;
     let n_rays = n_pixels as f64 * n_sub * n_sub;
-    let moved_bytes = (n_rays * moved) as u64 + (n_pixels * size_of::<Pixel>()) as u64;
-    let march = StageWork { stage: "raymarch", runs: 1, moved_bytes: Some(moved_bytes) };
+    let of_ray = probe(medium, camera, run.params.f64("step"))?;
+    let moved = |of_lit: f64| n_rays * (of_ray.lit * of_lit + of_ray.void * BYTES_OF_A_VOID_PAIR) + pixels;
+    let besides = bytes_besides_beams(&plan, medium, residual);
+    let of_beams = bytes_of_beams(&plan, medium, &beams);
+    let looked_up = moved(besides + of_beams);
+    let gathering = bytes_of_gathering(&plan, medium, of_beams);
+    let gathered = moved(besides + 16.0 * plan.channels.count as f64);
+    let mut stages = Vec::new();
+    if has_beams {
+        let facts = Gathering {
+            n_beams: beams.len(),
+            is_plain: parts.iter().all(|part| part.is_plain()),
+            is_closed: medium.homogeneous.is_some(),
+            g: beams.iter().map(|beam| medium.g.abs() * beam.a0).fold(0.0, f64::max),
+            distance: distance(medium, camera),
+            cell_tau: MEAN_OF_LARGEST * medium.sigma_t_max * medium.lattice.cell_m,
+            looked_up_bytes: looked_up,
+            gathered_bytes: gathering + gathered,
+        };
+        let (has_sums, of_sums) = planner::gathering(facts, run.prune);
+        plan.has_sums = has_sums;
+        decisions.push(of_sums);
+        let gather = StageWork { stage: "raymarch/gather", runs: 1, moved_bytes: Some(gathering as u64) };
+        stages.extend(has_sums.then_some(gather));
+    }
+    let moved_bytes = Some(if plan.has_sums { gathered } else { looked_up } as u64);
+    stages.push(StageWork { stage: "raymarch", runs: 1, moved_bytes });
     plan.report = Report {
         decisions,
         cells: None,
         channels: Some(channels.count),
         bytes: Some((n_pixels * super::layers::BYTES_OF_A_PIXEL) as u64),
-        stages: vec![march],
+        stages,
     };
     Ok(plan)
+}
+
+/// From the eye to the nearest cell that may hold something [cells].
+fn distance(medium: &Medium, camera: &Camera) -> f64 {
+    let eye = medium.lattice.index_from_world().transform_point3(camera.position);
+    let last = DVec3::from_array(medium.lattice.occupied.map(|n| (n - 1) as f64));
+    eye.distance(eye.clamp(DVec3::ZERO, last))
 }
 
 /// Two samples of extinction.
 const BYTES_OF_A_VOID_PAIR: f64 = 8.0;
 
-/// Arithmetic counts as bytes, as measured: of a pair of steps, of finding a depth or a point light, of what
-/// glows in both steps.
-const ARITHMETIC: f64 = 32.0;
+/// Arithmetic counts as bytes, as measured: of a pair of steps, of a beam, of finding a depth or a point light, of
+/// what glows in both steps.
+const ARITHMETIC: f64 = 12.0;
+const ARITHMETIC_OF_A_BEAM: f64 = 20.0;
 const ARITHMETIC_OF_A_PLACE: f64 = 16.0;
 const ARITHMETIC_OF_GLOW: f64 = 96.0;
 
-/// What a pair of steps reads where there is matter: two samples of extinction; a depth and, in each channel,
-/// the table of the peak for each beam; the residual; flame, temperature and black bodies of each step.
-fn bytes_of_a_lit_pair(plan: &Plan, medium: &Medium, beams: &[Beam], residual: Option<&Residual>) -> f64 {
+/// What a pair of steps reads where there is matter, but for beams: two samples of extinction; the residual;
+/// flame, temperature and black bodies of each step.
+fn bytes_besides_beams(plan: &Plan, medium: &Medium, residual: Option<&Residual>) -> f64 {
     let mut bytes = ARITHMETIC + if medium.homogeneous.is_some() { 0.0 } else { BYTES_OF_A_VOID_PAIR };
-    if plan.has_beams {
-        let is_placed = |beam: &&Beam| medium.homogeneous.is_some() || matches!(beam.place, Place::Point(_));
-        let peak = if plan.has_peak { 4.0 * plan.channels.count as f64 } else { 0.0 };
-        // Four of many share a texel of half floats.
-        let depth = if beams.len() <= 2 { 4.0 } else { 2.0 };
-        bytes += beams.len() as f64 * (depth + peak);
-        bytes += beams.iter().filter(is_placed).count() as f64 * ARITHMETIC_OF_A_PLACE;
-    }
     if let Some(residual) = residual.filter(|_| plan.has_residual) {
         bytes += 16.0 * residual.channels.count as f64;
     }
@@ -125,6 +151,32 @@ fn bytes_of_a_lit_pair(plan: &Plan, medium: &Medium, beams: &[Beam], residual: O
     }
     bytes
 }
+
+/// What is read of all beams for one place: a depth and, in each channel, the table of the peak.
+fn bytes_of_beams(plan: &Plan, medium: &Medium, beams: &[Beam]) -> f64 {
+    if !plan.has_beams {
+        return 0.0;
+    }
+    let is_placed = |beam: &&Beam| medium.homogeneous.is_some() || matches!(beam.place, Place::Point(_));
+    let n_peaks = if super::is_grey(medium) { 1 } else { plan.channels.count };
+    let peak = if plan.has_peak { 4.0 * n_peaks as f64 } else { 0.0 };
+    // Four of many share a texel of half floats.
+    let depth = if beams.len() <= 2 { 4.0 } else { 2.0 };
+    beams.len() as f64 * (ARITHMETIC_OF_A_BEAM + depth + peak)
+        + beams.iter().filter(is_placed).count() as f64 * ARITHMETIC_OF_A_PLACE
+}
+
+/// What a gathering moves: for each corner of filled blocks the beams, a walk to the eye through half of the
+/// medium, and the sums.
+fn bytes_of_gathering(plan: &Plan, medium: &Medium, of_beams: f64) -> f64 {
+    let n_corners = (medium.blocks.n_filled() * CORNERS_OF_A_BLOCK) as f64;
+    let way = 0.5 * medium.lattice.occupied.into_iter().sum::<usize>() as f64 / 3.0;
+    let walk = 4.0 * way * medium.blocks.samples_per_cell();
+    n_corners * (of_beams + walk + 16.0 * plan.channels.count as f64)
+}
+
+/// Of 8³ cells, with the faces that blocks share counted for each.
+const CORNERS_OF_A_BLOCK: usize = 9 * 9 * 9;
 
 /// Pairs of steps of a ray, the mean over the picture.
 struct Steps {

@@ -7,6 +7,7 @@ use serde_json::json;
 use super::MarchParams;
 use super::layers::Pixel;
 use super::oracle::{MarchScene, Marched, Ray, box_interval, march_through};
+use super::sums::GatherParams;
 use crate::camera::Camera;
 use crate::geometry::Mesh;
 use crate::gpu::Gpu;
@@ -22,6 +23,8 @@ use crate::nodes::testing::{
 use crate::optics::peak::peak_table;
 use crate::volume::field::Field;
 use crate::wire::{Beam, Beams, Residual};
+
+mod gathered;
 
 const SIZE: [usize; 2] = [7, 5];
 
@@ -68,9 +71,8 @@ fn channel(image: &Image, layer: &str, channel: usize) -> Vec<f64> {
     layer.data.iter().skip(channel).step_by(layer.channels).map(|value| f64::from(*value)).collect()
 }
 
-/// What the oracle sees along the rays, over the way that the shader marches: between the centers of the
-/// outermost cells, which are void.
-fn expected(scene: &Scene, channel: usize, lit: &Lit, rays: &[Ray]) -> Vec<Marched> {
+/// Calls `body` with what rays of the oracle march through.
+fn with_march<T>(scene: &Scene, channel: usize, lit: &Lit, body: impl FnOnce(&MarchScene) -> T) -> T {
     let emission = lit.fire.as_ref().map(|fire| fire.oracle(channel));
     let medium = scene.oracle(channel);
     let table = peak_table(scene.g);
@@ -81,7 +83,7 @@ fn expected(scene: &Scene, channel: usize, lit: &Lit, rays: &[Ray]) -> Vec<March
             window: beam.window,
         })
         .collect();
-    let march = MarchScene {
+    body(&MarchScene {
         medium: &medium,
         beams: &beams,
         residual: &lit.residual[channel],
@@ -90,18 +92,23 @@ fn expected(scene: &Scene, channel: usize, lit: &Lit, rays: &[Ray]) -> Vec<March
         peak_table: &table,
         step: 0.5,
         least_k: (0..3).map(|c| scene.oracle(c).scaled().k).fold(1.0, f64::min),
-    };
-    let high = DVec3::from_array(scene.sigma_t.dims.map(|n| (n - 1) as f64));
-    let see = |ray: &Ray| {
-        march_through(
-            &march,
-            ray,
-            box_interval(ray, DVec3::ZERO, high),
-            |p| medium.sigma_t.trilinear_zero(p),
-            |beam, p| beams[beam].tau_corners.trilinear_clamp(p + 0.5),
-        )
-    };
-    rays.iter().map(see).collect()
+    })
+}
+
+/// The way of a ray that the shader marches: between the centers of the outermost cells, which are void.
+fn interval(march: &MarchScene, ray: &Ray) -> Option<[f64; 2]> {
+    let high = DVec3::from_array(march.medium.sigma_t.dims.map(|n| (n - 1) as f64));
+    box_interval(ray, DVec3::ZERO, high)
+}
+
+/// What the oracle sees along the rays.
+fn expected(scene: &Scene, channel: usize, lit: &Lit, rays: &[Ray]) -> Vec<Marched> {
+    with_march(scene, channel, lit, |march| {
+        let sigma_t_at = |p: DVec3| march.medium.sigma_t.trilinear_zero(p);
+        let tau_to_light = |beam: usize, p: DVec3| march.beams[beam].tau_corners.trilinear_clamp(p + 0.5);
+        let see = |ray: &Ray| march_through(march, ray, interval(march, ray), sigma_t_at, tau_to_light);
+        rays.iter().map(see).collect()
+    })
 }
 
 /// The light in a medium as it was read back.
@@ -449,11 +456,14 @@ fn layouts_are_those_of_the_shader() {
             ("widening", "true"),
             ("emission", "true"),
             ("beams", "true"),
+            ("sums", "true"),
+            ("grey", "false"),
             ("lobes", "true"),
             ("skips", "true"),
             ("n_beams", "params.n_beams"),
         ];
         assert_layout::<MarchParams>("raymarch.wgsl", "MarchParams", &choices);
+        assert_layout::<GatherParams>("raymarch/gather.wgsl", "GatherParams", &choices);
         assert_layout::<Pixel>("raymarch.wgsl", "Pixel", &choices);
     }
 }
