@@ -1,5 +1,8 @@
 //! The window without a window: by AccessKit names.
 
+mod keys;
+mod safety;
+
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
@@ -13,7 +16,7 @@ fn harness() -> Harness<'static, App> {
 fn harness_in(state: Option<PathBuf>) -> Harness<'static, App> {
     let adapter = AdapterChoice::Named("no such adapter".to_owned());
     let mut app = App::new(&egui::Context::default(), None, &adapter, state);
-    app.settings = Settings::default();
+    (app.settings, app.settings_file) = (Settings::default(), None);
     let draw = |ui: &mut Ui, app: &mut App| eframe::App::ui(app, ui, &mut eframe::Frame::_new_kittest());
     Harness::builder().with_size([1280.0, 800.0]).build_ui_state(draw, app)
 }
@@ -294,6 +297,23 @@ fn a_broken_frame_is_told_marked_and_passed_over() {
     harness.state_mut().perform(&context, Action::Retry);
     harness.run_steps(2);
     assert_eq!(broken(&harness), [] as [i64; 0]);
+}
+
+#[test]
+fn groups_are_dissolved_where_the_graph_changes_alone() {
+    let (_folder, mut harness) = sequence();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num3);
+    harness.run_steps(3);
+    let flat = harness.state_mut().flat();
+    assert!(flat.nodes.contains_key("files/steam"));
+    harness.run_steps(3);
+    assert!(Rc::ptr_eq(&flat, &harness.state_mut().flat()));
+    // Another frame, and another graph.
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::ArrowRight);
+    harness.run_steps(2);
+    assert_eq!(harness.state_mut().flat().frame, Some(2));
+    harness.state_mut().project.edit("say", |document| document.about = "mine".to_owned());
+    assert_eq!(harness.state_mut().flat().about, "mine");
 }
 
 #[test]

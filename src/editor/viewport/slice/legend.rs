@@ -13,7 +13,8 @@ const N_STEPS: usize = 128;
 /// Draws the bar at the right edge of `area`; `at` is the value under the cursor.
 pub fn show(ui: &mut Ui, area: Rect, map: &str, [name, unit]: [&str; 2], range: [f64; 2], at: Option<f32>) {
     let Some(map) = Colormap::named(map) else { return };
-    let height = (area.height() - 110.0).clamp(60.0, 220.0);
+    // With what is said above and below it left free.
+    let height = (area.height() - 126.0).clamp(60.0, 220.0);
     let title = if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
     let font = FontId::proportional(11.0);
     let painter = ui.painter().with_clip_rect(area);
