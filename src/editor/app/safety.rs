@@ -8,6 +8,8 @@ use egui::{Panel, Ui, Window};
 
 use super::App;
 use crate::editor::project::{Autosave, Recoverable, recoverable, versions};
+use crate::editor::window;
+use crate::gpu::Faults;
 
 /// What was not saved, and what was saved before.
 pub struct Safety {
@@ -17,13 +19,21 @@ pub struct Safety {
     /// What another program left when it ended without saving.
     found: Vec<Recoverable>,
     shows_versions: bool,
+    /// Of the window's own device, and where to leave the graph when it is gone.
+    device: Option<(Faults, window::Place)>,
 }
 
 impl Safety {
     /// In the program's own folder.
     pub fn new(state: Option<PathBuf>) -> Self {
         let found = state.as_deref().map(recoverable).unwrap_or_default();
-        Self { autosave: state.as_deref().map(Autosave::new), found, state, shows_versions: false }
+        Self {
+            autosave: state.as_deref().map(Autosave::new),
+            found,
+            state,
+            shows_versions: false,
+            device: None,
+        }
     }
 
     /// Shows the earlier versions, or hides them.
@@ -33,6 +43,28 @@ impl Safety {
 }
 
 impl App {
+    /// Watches the window's own device.
+    pub fn watch(&mut self, faults: Faults, place: window::Place) {
+        self.safety.device = Some((faults, place));
+    }
+
+    /// Says that this window stands in place of one whose device was lost.
+    pub fn tell_lost(&mut self, why: &str) {
+        self.toasts.complain(format!(
+            "The window's GPU was lost ({why}) and opened anew. The graph and its history are as they were."
+        ));
+    }
+
+    /// Ends the window where its device is gone.
+    fn follow_device(&mut self) {
+        let Some((faults, _)) = &self.safety.device else { return };
+        if faults.lost().is_some() {
+            self.files.close();
+        } else if let Some(error) = faults.take_error() {
+            self.toasts.complain(format!("The window was not drawn as it should be: {error}"));
+        }
+    }
+
     /// Writes down what is not saved, and asks what to do with what was not.
     pub(super) fn safety(&mut self, ui: &Ui) {
         if let Some(autosave) = self.safety.autosave.as_mut().filter(|_| self.is_open) {
@@ -48,6 +80,7 @@ impl App {
             self.toasts.complain(warning);
         }
         self.versions(ui);
+        self.follow_device();
     }
 
     /// From now on this graph's versions are kept, and what it was opened without is told.
@@ -73,6 +106,13 @@ impl App {
 
     /// The window ends. Where nobody agreed to that (the display is gone), what is not saved stays written down.
     pub(super) fn end(&mut self) {
+        if let Some((faults, place)) = &self.safety.device
+            && let Some(why) = faults.lost()
+        {
+            let project = self.is_open.then(|| std::mem::take(&mut self.project));
+            *place.borrow_mut() = Some(window::Left { project, why: Some(why) });
+        }
+        // What is left to the next window is not found there once more.
         if self.files.is_closing() {
             self.give_up();
         }

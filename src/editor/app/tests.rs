@@ -237,6 +237,46 @@ fn without_a_device_the_graph_is_kept_and_it_is_tried_again() {
     assert_eq!(harness.state().document().about, "mine");
 }
 
+#[test]
+fn a_window_whose_device_is_lost_leaves_its_graph_to_the_next() {
+    let state = tempfile::tempdir().unwrap();
+    let mut harness = harness_in(Some(state.path().to_owned()));
+    let (faults, place) = (crate::gpu::Faults::default(), crate::editor::window::Place::default());
+    harness.state_mut().watch(faults.clone(), place.clone());
+    harness.run_steps(2);
+    harness.get_by_label("Preset smoke").click();
+    harness.run_steps(3);
+    harness.state_mut().project.edit("say", |document| document.about = "mine".to_owned());
+    harness.run_steps(2);
+    assert!(!harness.state().files.is_closing());
+    faults.lose("it was unplugged");
+    harness.run_steps(2);
+    // No question: nothing is given up.
+    assert!(harness.state().files.is_closing() && harness.query_by_label("Do not save").is_none());
+    harness.state_mut().end();
+    drop(harness);
+    assert!(crate::editor::project::recoverable(state.path()).is_empty());
+    let left = place.take().unwrap();
+    let mut project = left.project.unwrap();
+    assert_eq!((project.document().about.as_str(), project.is_unsaved()), ("mine", true));
+    assert_eq!(project.undo().as_deref(), Some("say"));
+    project.redo();
+    // The next one has it and says why.
+    let adapter = AdapterChoice::Named("no such adapter".to_owned());
+    let mut next = App::new(&egui::Context::default(), Some(project), &adapter, None);
+    next.tell_lost(&left.why.unwrap());
+    let draw = |ui: &mut Ui, app: &mut App| eframe::App::ui(app, ui, &mut eframe::Frame::_new_kittest());
+    let mut harness = Harness::builder().with_size([1280.0, 800.0]).build_ui_state(draw, next);
+    harness.run_steps(3);
+    assert!(harness.query_by_label_contains("it was unplugged").is_some());
+    assert!(harness.state().is_open && harness.state().project.can_undo());
+    // Where there is no next one it is written down.
+    let said =
+        crate::editor::project::Autosave::write_down(&harness.state().project, Some(state.path().to_owned()));
+    assert!(said.contains("next start"), "{said}");
+    assert_eq!(crate::editor::project::recoverable(state.path())[0].document.about, "mine");
+}
+
 /// Three frames, of which the medium is made in a group.
 const SEQUENCE: &str = r#"{"tyndall": 1, "nodes": {
     "files": {"type": "group", "nodes": {"steam": {"type": "load_vdb", "path": "steam_#.vdb"}}, "wires": [],
