@@ -271,6 +271,9 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        if self.hands_over(&context) {
+            return;
+        }
         self.listen(&context);
         for action in action::pressed(&context, self.is_open && self.canvas.has_keys()) {
             if self.possible().is(action) {

@@ -63,19 +63,21 @@ pub struct Faults {
     /// Why the device is gone; it stays so.
     lost: Arc<Mutex<Option<String>>>,
     uncaptured: Arc<Mutex<Option<String>>>,
+    /// `None` in tests alone.
+    device: Option<wgpu::Device>,
 }
 
 impl Faults {
     /// Listens to a device from now on. One that nobody listens to ends the program at its first error.
     pub fn of(device: &wgpu::Device) -> Self {
-        let faults = Self::default();
-        let seen = faults.clone();
+        let faults = Self { device: Some(device.clone()), ..Self::default() };
+        let seen = Self { device: None, ..faults.clone() };
         device.set_device_lost_callback(move |reason, message| {
             if reason != wgpu::DeviceLostReason::Destroyed {
                 *seen.lost.lock().unwrap() = Some(message);
             }
         });
-        let seen = faults.clone();
+        let seen = Self { device: None, ..faults.clone() };
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             seen.uncaptured.lock().unwrap().get_or_insert(error.to_string());
         }));
@@ -85,6 +87,15 @@ impl Faults {
     /// Why the device is gone, if it is.
     pub fn lost(&self) -> Option<String> {
         self.lost.lock().unwrap().clone()
+    }
+
+    /// The same, and asks the device first: one that nothing is asked of does not say that it is gone.
+    pub fn look(&self) -> Option<String> {
+        if let Some(device) = &self.device {
+            // Fails where the device is gone, which is what is asked.
+            let _ = device.poll(wgpu::PollType::Poll);
+        }
+        self.lost()
     }
 
     /// The first error since this was asked, told once.

@@ -55,14 +55,24 @@ impl App {
         ));
     }
 
-    /// Ends the window where its device is gone.
-    fn follow_device(&mut self) {
-        let Some((faults, _)) = &self.safety.device else { return };
-        if faults.lost().is_some() {
+    /// Whether the window's device is gone. Then its graph is left to the next one, it closes, and nothing is to be
+    /// drawn: egui-wgpu ends the program where it cannot hand on what is. What is written down stays until the end.
+    pub(super) fn hands_over(&mut self, context: &egui::Context) -> bool {
+        let Some((faults, place)) = &self.safety.device else { return false };
+        let Some(why) = faults.look() else {
+            if let Some(error) = faults.take_error() {
+                self.toasts.complain(format!("The window was not drawn as it should be: {error}"));
+            }
+            return false;
+        };
+        if !self.files.is_closing() {
+            let project = self.is_open.then(|| std::mem::take(&mut self.project));
+            *place.borrow_mut() = Some(window::Left { project, why: Some(why) });
+            self.is_open = false;
             self.files.close();
-        } else if let Some(error) = faults.take_error() {
-            self.toasts.complain(format!("The window was not drawn as it should be: {error}"));
         }
+        context.send_viewport_cmd(egui::ViewportCommand::Close);
+        true
     }
 
     /// Writes down what is not saved, and asks what to do with what was not.
@@ -80,7 +90,6 @@ impl App {
             self.toasts.complain(warning);
         }
         self.versions(ui);
-        self.follow_device();
     }
 
     /// From now on this graph's versions are kept, and what it was opened without is told.
@@ -106,13 +115,7 @@ impl App {
 
     /// The window ends. Where nobody agreed to that (the display is gone), what is not saved stays written down.
     pub(super) fn end(&mut self) {
-        if let Some((faults, place)) = &self.safety.device
-            && let Some(why) = faults.lost()
-        {
-            let project = self.is_open.then(|| std::mem::take(&mut self.project));
-            *place.borrow_mut() = Some(window::Left { project, why: Some(why) });
-        }
-        // What is left to the next window is not found there once more.
+        // What was left to another window is not found there once more.
         if self.files.is_closing() {
             self.give_up();
         }

@@ -59,7 +59,9 @@ pub fn show(ui: &Ui, open: &mut bool) {
     let n_columns = COLUMNS.len().min((COLUMNS.len() as f32 * room.width() / all) as usize).max(1);
     let window = Window::new("Shortcuts").open(open).collapsible(false).resizable(false);
     window.anchor(Align2::CENTER_CENTER, [0.0, 0.0]).show(ui.ctx(), |ui| {
-        ScrollArea::vertical().max_height(room.height() - 60.0).show(ui, |ui| {
+        // A window of a size of its own would be too low for all and scroll.
+        let height = room.height() - 60.0;
+        ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
             ui.horizontal_top(|ui| {
                 ui.spacing_mut().item_spacing.x = GAP;
                 for columns in COLUMNS.chunks(COLUMNS.len().div_ceil(n_columns)) {

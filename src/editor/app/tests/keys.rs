@@ -35,7 +35,8 @@ fn what_stands_over_the_window_has_its_keys_to_itself() {
         // Escape was not the canvas' too, which gives up its selection at it.
         assert_eq!(harness.state().selection.active(), Some("medium"));
     }
-    // Nor are the letters of commands, while the page is read.
+    // Nor are the letters of commands, while the page is read and the pointer rests on the canvas beside it.
+    harness.hover_at(egui::pos2(20.0, 760.0));
     press(&mut harness, Modifiers::NONE, Key::Questionmark);
     press(&mut harness, Modifiers::NONE, Key::M);
     assert!(!harness.state().document().nodes["medium"].mute);
@@ -59,6 +60,11 @@ fn the_page_of_shortcuts_stands_still_and_fits() {
         // A window that is new is measured once, unseen.
         assert_eq!(first, Some(place(&harness)), "{size:?}");
         assert!(place(&harness).right() < size[0], "{size:?}");
+        // Where there is room all lines are seen: they stand around the window's middle, below a title and a heading of
+        // some 20 points more than half of which they are lower. A page that scrolls has its last lines 30 lower still.
+        let last = harness.get_by_label("Walk the nodes, inspect one").rect();
+        let middle = 0.5 * (place(&harness).center().y + last.center().y);
+        assert!(size[1] < 800.0 || (middle - 400.0).abs() < 35.0, "{middle}");
     }
 }
 
