@@ -64,6 +64,7 @@ pub fn entry_shown(
     let is_refused = draft.as_ref().is_some_and(|draft| draft.message.is_some());
     let color = is_refused.then(|| ui.visuals().error_fg_color);
     let edit = TextEdit::singleline(&mut text).id(id).desired_width(f32::INFINITY).text_color_opt(color);
+    let edit = edit.vertical_align(egui::Align::Center);
     // With its margins, so that what stands after it has the room that it was left.
     let response = ui.add_sized(egui::vec2(width, ui.spacing().interact_size.y), edit);
     named(&response, name);
