@@ -231,9 +231,12 @@ fn without_a_device_the_graph_is_kept_and_it_is_tried_again() {
     harness.state_mut().project.edit("say", |document| document.about = "mine".to_owned());
     wait(&mut harness);
     let before = harness.state().asked.as_ref().map(|asked| asked.number());
-    harness.get_by_label("Try again").click();
-    harness.run_steps(3);
-    assert!(harness.state().asked.as_ref().map(|asked| asked.number()) > before);
+    // The answer to the edit may take the button away again before it is clicked.
+    while harness.state().asked.as_ref().map(|asked| asked.number()) == before {
+        wait(&mut harness);
+        harness.get_by_label("Try again").click();
+        harness.run_steps(3);
+    }
     assert_eq!(harness.state().document().about, "mine");
 }
 

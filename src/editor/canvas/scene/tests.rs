@@ -70,7 +70,7 @@ fn no_node_of_a_preset_lies_on_another() {
         let scene = Scene::new(&document, catalog());
         for (idx, node) in scene.nodes.iter().enumerate() {
             for other in &scene.nodes[..idx] {
-                let lies_on = node.rect.expand(4.0).intersects(other.rect.expand(4.0));
+                let lies_on = node.rect.expand(3.0).intersects(other.rect.expand(3.0));
                 assert!(!lies_on, "{from}: {} lies on {}", node.name, other.name);
             }
         }
