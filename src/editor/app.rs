@@ -57,8 +57,7 @@ pub struct App {
     /// The node whose picture was chosen.
     chosen: Option<String>,
     look: Option<Look>,
-    /// The document without groups, and the revision and frame of which it was made.
-    flat: Option<((u64, Option<i64>), Rc<Document>)>,
+    flat: Option<Flat>,
     pictures: HashMap<String, Picture>,
     /// Small pictures of what nodes give, by name.
     thumbnails: HashMap<String, TextureHandle>,
@@ -71,6 +70,13 @@ pub struct App {
     restarts: bool,
     /// The inspector is to have the keyboard.
     inspects: bool,
+}
+
+/// The document without groups.
+struct Flat {
+    /// The revision and frame of which it was made.
+    of: (u64, Option<i64>),
+    document: Rc<Document>,
 }
 
 /// What a benchmark counts.
@@ -225,14 +231,11 @@ impl App {
     fn flat(&mut self) -> Rc<Document> {
         let document = self.project.document();
         let of = (self.project.revision(), document.frame);
-        match &self.flat {
-            Some((made_of, flat)) if *made_of == of => flat.clone(),
-            _ => {
-                let flat = Rc::new(flatten(document, catalog()).into_owned());
-                self.flat = Some((of, flat.clone()));
-                flat
-            }
-        }
+        let made = self.flat.take().filter(|flat| flat.of == of);
+        let flat =
+            made.unwrap_or_else(|| Flat { of, document: Rc::new(flatten(document, catalog()).into_owned()) });
+        let flat = self.flat.insert(flat);
+        Rc::clone(&flat.document)
     }
 
     /// Calls `body` with what the viewport shows.

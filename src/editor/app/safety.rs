@@ -50,8 +50,10 @@ impl App {
 
     /// Says that this window stands in place of one whose device was lost.
     pub fn tell_lost(&mut self, why: &str) {
+        // Not every driver says why.
+        let why = if why.is_empty() { String::new() } else { format!(" ({why})") };
         self.toasts.complain(format!(
-            "The window's GPU was lost ({why}) and opened anew. The graph and its history are as they were."
+            "The window's GPU was lost{why} and opened anew. The graph and its history are as they were."
         ));
     }
 
