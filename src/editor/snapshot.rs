@@ -5,8 +5,7 @@
 
 use eframe::egui_wgpu::WgpuSetup;
 use egui::{Theme, Ui, Vec2};
-use egui_kittest::wgpu::{WgpuTestRenderer, default_wgpu_setup};
-use egui_kittest::{Harness, SnapshotOptions};
+use egui_kittest::{Harness, SnapshotOptions, wgpu as drawing};
 
 use crate::gpu::testing::{gpu, window_backends};
 
@@ -26,11 +25,11 @@ pub fn assert_looks<State>(
     if gpu().is_none() {
         return;
     }
-    let mut setup = default_wgpu_setup();
+    let mut setup = drawing::default_wgpu_setup();
     if let WgpuSetup::CreateNew(new) = &mut setup {
         new.instance_descriptor.backends = window_backends();
     }
-    let builder = Harness::builder().with_size(size).renderer(WgpuTestRenderer::from_setup(setup));
+    let builder = Harness::builder().with_size(size).renderer(drawing::WgpuTestRenderer::from_setup(setup));
     let mut harness = builder.build_ui_state(draw, state);
     crate::editor::theme::apply(&harness.ctx, theme.into());
     harness.run_steps(4);
