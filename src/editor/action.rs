@@ -84,6 +84,14 @@ pub struct ActionSpec {
     pub menu: &'static str,
     /// Its key, where it has one.
     pub shortcut: Option<KeyboardShortcut>,
+    /// A line parts it from what stands before it in its menu.
+    pub is_apart: bool,
+}
+
+impl ActionSpec {
+    const fn apart(self) -> Self {
+        Self { is_apart: true, ..self }
+    }
 }
 
 const fn key(modifiers: Modifiers, key: Key) -> Option<KeyboardShortcut> {
@@ -96,7 +104,7 @@ const fn spec(
     label: &'static str,
     shortcut: Option<KeyboardShortcut>,
 ) -> ActionSpec {
-    ActionSpec { action, label, menu, shortcut }
+    ActionSpec { action, label, menu, shortcut, is_apart: false }
 }
 
 const fn canvas(
@@ -115,59 +123,58 @@ const COMMAND_SHIFT: Modifiers = Modifiers::COMMAND.plus(Modifiers::SHIFT);
 /// The menus, in their order.
 pub const MENUS: [&str; 5] = ["File", "Edit", "Node", "View", "Help"];
 
-/// All actions, in the order of their menus. A shortcut with more modifiers stands before the one with
-/// fewer, because a shortcut is taken by the first that fits.
+/// All actions, in the order of their menus.
 pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::Start, "File", "Start page", key(COMMAND, Key::N)),
     spec(Action::OpenVolume, "File", "Open a VDB…", key(COMMAND_SHIFT, Key::O)),
     spec(Action::Open, "File", "Open a graph…", key(COMMAND, Key::O)),
+    spec(Action::Save, "File", "Save", key(COMMAND, Key::S)).apart(),
     spec(Action::SaveAs, "File", "Save as…", key(COMMAND_SHIFT, Key::S)),
-    spec(Action::Save, "File", "Save", key(COMMAND, Key::S)),
     spec(Action::Revert, "File", "Revert to the file", None),
     spec(Action::Versions, "File", "Earlier versions…", None),
-    spec(Action::Quit, "File", "Quit", key(COMMAND, Key::Q)),
-    spec(Action::Redo, "Edit", "Redo", key(COMMAND_SHIFT, Key::Z)),
+    spec(Action::Quit, "File", "Quit", key(COMMAND, Key::Q)).apart(),
     spec(Action::Undo, "Edit", "Undo", key(COMMAND, Key::Z)),
-    canvas(Command::OpenGroup, "Node", "Open the group", key(COMMAND, Key::ArrowDown)),
-    canvas(Command::LeaveGroup, "Node", "Leave the group", key(COMMAND, Key::ArrowUp)),
-    canvas(Command::AddFrame, "Node", "Frame with a comment", key(COMMAND_SHIFT, Key::F)),
-    canvas(Command::Ungroup, "Node", "Ungroup", key(COMMAND_SHIFT, Key::G)),
-    canvas(Command::Group, "Node", "Group", key(COMMAND, Key::G)),
-    canvas(Command::Mute, "Node", "Mute", key(NONE, Key::M)),
-    canvas(Command::Bypass, "Node", "Bypass", key(NONE, Key::B)),
-    canvas(Command::AddNode, "Node", "Add a node", key(NONE, Key::Tab)),
-    canvas(Command::Cut, "Edit", "Cut", key(COMMAND, Key::X)),
+    spec(Action::Redo, "Edit", "Redo", key(COMMAND_SHIFT, Key::Z)),
+    canvas(Command::Cut, "Edit", "Cut", key(COMMAND, Key::X)).apart(),
     canvas(Command::Copy, "Edit", "Copy", key(COMMAND, Key::C)),
     canvas(Command::Paste, "Edit", "Paste", key(COMMAND, Key::V)),
     canvas(Command::Duplicate, "Edit", "Duplicate", key(COMMAND, Key::D)),
     canvas(Command::Delete, "Edit", "Delete", key(NONE, Key::Delete)),
-    canvas(Command::SelectAll, "Edit", "Select all", key(COMMAND, Key::A)),
-    spec(Action::StoreB, "View", "Store picture B", key(COMMAND, Key::F2)),
+    canvas(Command::SelectAll, "Edit", "Select all", key(COMMAND, Key::A)).apart(),
+    canvas(Command::AddNode, "Node", "Add a node", key(NONE, Key::Tab)),
     canvas(Command::Rename, "Node", "Rename", key(NONE, Key::F2)),
-    canvas(Command::FrameAll, "View", "Show all nodes", key(NONE, Key::Home)),
-    canvas(Command::FrameSelected, "View", "Show selected nodes", key(NONE, Key::F)),
+    canvas(Command::Mute, "Node", "Mute", key(NONE, Key::M)),
+    canvas(Command::Bypass, "Node", "Bypass", key(NONE, Key::B)),
+    canvas(Command::Group, "Node", "Group", key(COMMAND, Key::G)).apart(),
+    canvas(Command::Ungroup, "Node", "Ungroup", key(COMMAND_SHIFT, Key::G)),
+    canvas(Command::OpenGroup, "Node", "Open the group", key(COMMAND, Key::ArrowDown)),
+    canvas(Command::LeaveGroup, "Node", "Leave the group", key(COMMAND, Key::ArrowUp)),
+    canvas(Command::AddFrame, "Node", "Frame with a comment", key(COMMAND_SHIFT, Key::F)).apart(),
     canvas(Command::Arrange, "Node", "Arrange nodes", key(NONE, Key::L)),
-    canvas(Command::ToggleSnap, "View", "Snap to the grid", None),
-    canvas(Command::ToggleMinimap, "View", "Minimap", None),
     spec(Action::Palette, "View", "Command palette", key(COMMAND_SHIFT, Key::P)),
-    spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)),
+    spec(Action::OtherPart, "View", "To canvas or inspector", key(NONE, Key::F6)),
+    spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)).apart(),
     spec(Action::ActualSize, "View", "Picture at 1:1", key(COMMAND, Key::Num1)),
     spec(Action::FrameMedium, "View", "Frame the medium", key(COMMAND, Key::Num2)),
     spec(Action::Slice, "View", "Slice plane", key(COMMAND, Key::Num3)),
     spec(Action::Histogram, "View", "Histogram", key(COMMAND, Key::H)),
     spec(Action::StoreA, "View", "Store picture A", key(COMMAND, Key::F1)),
-    spec(Action::Play, "View", "Play or stop", key(COMMAND, Key::Space)),
+    spec(Action::StoreB, "View", "Store picture B", key(COMMAND, Key::F2)),
+    spec(Action::Play, "View", "Play or stop", key(COMMAND, Key::Space)).apart(),
     spec(Action::NextFrame, "View", "Next frame", key(COMMAND, Key::ArrowRight)),
     spec(Action::PreviousFrame, "View", "Previous frame", key(COMMAND, Key::ArrowLeft)),
-    spec(Action::OtherPart, "View", "To canvas or inspector", key(NONE, Key::F6)),
-    spec(Action::Larger, "View", "Larger interface", key(COMMAND, Key::Equals)),
+    canvas(Command::FrameAll, "View", "Show all nodes", key(NONE, Key::Home)).apart(),
+    canvas(Command::FrameSelected, "View", "Show selected nodes", key(NONE, Key::F)),
+    canvas(Command::ToggleSnap, "View", "Snap to the grid", None),
+    canvas(Command::ToggleMinimap, "View", "Minimap", None),
+    spec(Action::Larger, "View", "Larger interface", key(COMMAND, Key::Equals)).apart(),
     spec(Action::Smaller, "View", "Smaller interface", key(COMMAND, Key::Minus)),
     spec(Action::NormalSize, "View", "Normal interface", None),
     spec(Action::Dark, "View", "Dark theme", None),
     spec(Action::Light, "View", "Light theme", None),
     spec(Action::System, "View", "System theme", None),
-    spec(Action::Retry, "Help", "Restart the renderer", None),
     spec(Action::Shortcuts, "Help", "Shortcuts", key(NONE, Key::Questionmark)),
+    spec(Action::Retry, "Help", "Restart the renderer", None),
 ];
 
 /// The actions whose keys were pressed, those of the canvas only while keys are meant for it; a text field
@@ -177,9 +184,17 @@ pub fn pressed(context: &egui::Context, canvas_has_keys: bool) -> Vec<Action> {
         return Vec::new();
     }
     let heard = ACTIONS.iter().filter(|spec| canvas_has_keys || !matches!(spec.action, Action::Canvas(_)));
-    let with_key = heard.filter_map(|spec| Some((spec.action, spec.shortcut?)));
-    let taken = with_key.filter(|(_, shortcut)| context.input_mut(|input| input.consume_shortcut(shortcut)));
+    let mut with_key: Vec<_> = heard.filter_map(|spec| Some((spec.action, spec.shortcut?))).collect();
+    // Ctrl+Z fits a Ctrl+Shift+Z as well: what has more modifiers is asked first.
+    with_key.sort_by_key(|(_, shortcut)| std::cmp::Reverse(n_modifiers(shortcut.modifiers)));
+    let taken = with_key
+        .into_iter()
+        .filter(|(_, shortcut)| context.input_mut(|input| input.consume_shortcut(shortcut)));
     taken.map(|(action, _)| action).collect()
+}
+
+fn n_modifiers(modifiers: Modifiers) -> usize {
+    [modifiers.alt, modifiers.shift, modifiers.command].into_iter().filter(|is_down| *is_down).count()
 }
 
 #[cfg(test)]
@@ -195,11 +210,26 @@ mod tests {
                 assert_ne!(spec.label, other.label);
                 let (Some(key), Some(earlier)) = (spec.shortcut, other.shortcut) else { continue };
                 assert_ne!(key, earlier, "{} and {}", spec.label, other.label);
-                // One that is part of another would be taken first.
-                let hides =
-                    key.logical_key == earlier.logical_key && key.modifiers.contains(earlier.modifiers);
-                assert!(!hides, "{} hides {}", other.label, spec.label);
             }
+        }
+    }
+
+    #[test]
+    fn the_shortcut_with_more_modifiers_is_taken() {
+        let context = egui::Context::default();
+        for spec in ACTIONS {
+            let Some(KeyboardShortcut { modifiers, logical_key }) = spec.shortcut else { continue };
+            let event = egui::Event::Key {
+                key: logical_key,
+                physical_key: None,
+                pressed: true,
+                repeat: false,
+                modifiers,
+            };
+            let input = egui::RawInput { events: vec![event], ..Default::default() };
+            let mut heard = Vec::new();
+            context.run_ui(input, |ui| heard = pressed(ui.ctx(), true)).textures_delta.clear();
+            assert_eq!(heard, [spec.action], "{}", spec.label);
         }
     }
 }

@@ -1,29 +1,31 @@
 //! The window: panels, and what passes between them.
 
 mod files;
+mod layout;
 mod safety;
 mod solving;
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
+use std::rc::Rc;
 
-use egui::{CentralPanel, Frame, Panel, Sense, TextureHandle, Ui, UiBuilder};
+use egui::{CentralPanel, Panel, TextureHandle, Ui};
 
 use super::action::{self, Action};
-use super::canvas::{Canvas, Request};
+use super::canvas::Canvas;
 use super::look::{self, Look};
-use super::panels::palette::{self, Palette};
-use super::panels::start::{self, Start};
+use super::panels::palette::Palette;
+use super::panels::start::Start;
 use super::panels::status_bar::{self, Figures};
 use super::panels::toasts::Toasts;
-use super::panels::{Possible, menu, shortcuts, timeline};
+use super::panels::{Possible, menu};
 use super::player::Player;
 use super::presets::{self, Preset};
 use super::settings::{Settings, ThemeChoice};
 use super::viewport::{Picture, Scene, Viewport};
-use super::{Project, Selection, Statuses, Worker, inspector, theme};
+use super::{Project, Selection, Statuses, Worker, theme};
 use crate::gpu::AdapterChoice;
-use crate::graph::flatten;
+use crate::graph::{Document, flatten};
 use crate::nodes::catalog;
 use crate::template;
 use crate::volume::Lattice;
@@ -48,11 +50,14 @@ pub struct App {
     safety: Safety,
     figures: Figures,
     settings: Settings,
+    /// Where they are kept.
+    settings_file: Option<PathBuf>,
     presets: Vec<Preset>,
     shows_shortcuts: bool,
     /// The node whose picture was chosen.
     chosen: Option<String>,
     look: Option<Look>,
+    flat: Option<Flat>,
     pictures: HashMap<String, Picture>,
     /// Small pictures of what nodes give, by name.
     thumbnails: HashMap<String, TextureHandle>,
@@ -67,6 +72,13 @@ pub struct App {
     inspects: bool,
 }
 
+/// The document without groups.
+struct Flat {
+    /// The revision and frame of which it was made.
+    of: (u64, Option<i64>),
+    document: Rc<Document>,
+}
+
 /// What a benchmark counts.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct PicturesSeen {
@@ -76,9 +88,6 @@ pub struct PicturesSeen {
     pub is_whole: bool,
 }
 
-/// What the canvas has of the window's height, where the user did not choose.
-const CANVAS_SHARE: f32 = 0.4;
-
 impl App {
     /// On a graph, or on the start page. What is not saved is kept in `state`, the program's own folder.
     pub fn new(
@@ -87,7 +96,8 @@ impl App {
         adapter: &AdapterChoice,
         state: Option<PathBuf>,
     ) -> Self {
-        let settings = Settings::load(Settings::file().as_deref());
+        let settings_file = Settings::file();
+        let settings = Settings::load(settings_file.as_deref());
         theme::apply(context, settings.theme.into());
         context.set_zoom_factor(settings.scale);
         let waker = context.clone();
@@ -107,10 +117,12 @@ impl App {
             safety: Safety::new(state),
             figures: Figures::default(),
             settings,
+            settings_file,
             presets: template::presets().map(|folder| presets::list(&folder)).unwrap_or_default(),
             shows_shortcuts: false,
             chosen: None,
             look: None,
+            flat: None,
             pictures: HashMap::new(),
             thumbnails: HashMap::new(),
             lattice: None,
@@ -122,6 +134,7 @@ impl App {
         };
         if let Some(file) = app.project.file().map(Path::to_owned) {
             app.settings.opened(&file);
+            app.remember();
         }
         app.keep_safe();
         app
@@ -152,14 +165,17 @@ impl App {
             Action::ActualSize => self.viewport.one_to_one(context),
             Action::Histogram => self.viewport.toggle_histogram(),
             Action::Slice => self.viewport.slice.toggle(),
-            Action::FrameMedium => self.with_scene(|viewport, project, scene| viewport.frame(project, scene)),
+            Action::FrameMedium => {
+                let framed = self.with_scene(|viewport, project, scene| viewport.frame(project, scene));
+                framed.unwrap_or_else(|why| self.toasts.say(why));
+            }
             Action::StoreA => self.with_scene(|viewport, _, scene| viewport.store(0, scene)),
             Action::StoreB => self.with_scene(|viewport, _, scene| viewport.store(1, scene)),
             Action::Play => self.player.toggle(now),
             Action::NextFrame => self.player.go_to(self.player.frame.saturating_add(1)),
             Action::PreviousFrame => self.player.go_to(self.player.frame.saturating_sub(1)),
             Action::OtherPart if self.canvas.is_focused() => self.inspects = true,
-            Action::OtherPart => self.canvas.take_keyboard(&self.selection),
+            Action::OtherPart => self.canvas.take_keyboard(&mut self.selection),
             Action::Larger => self.scale_to(context, self.settings.scale + 0.1),
             Action::Smaller => self.scale_to(context, self.settings.scale - 0.1),
             Action::NormalSize => self.scale_to(context, 1.0),
@@ -184,7 +200,13 @@ impl App {
 
     fn theme_to(&mut self, context: &egui::Context, choice: ThemeChoice) {
         self.settings.theme = choice;
+        self.remember();
         theme::apply(context, choice.into());
+    }
+
+    /// Keeps the settings, which a kill would otherwise take with it.
+    fn remember(&self) {
+        self.settings.save(self.settings_file.as_deref());
     }
 
     fn possible(&self) -> Possible {
@@ -205,12 +227,23 @@ impl App {
         self.has_frames().then_some(self.player.frame)
     }
 
+    /// The document without groups, made anew where it is another.
+    fn flat(&mut self) -> Rc<Document> {
+        let document = self.project.document();
+        let of = (self.project.revision(), document.frame);
+        let made = self.flat.take().filter(|flat| flat.of == of);
+        let flat =
+            made.unwrap_or_else(|| Flat { of, document: Rc::new(flatten(document, catalog()).into_owned()) });
+        let flat = self.flat.insert(flat);
+        Rc::clone(&flat.document)
+    }
+
     /// Calls `body` with what the viewport shows.
-    fn with_scene(&mut self, body: impl FnOnce(&mut Viewport, &mut Project, &Scene)) {
+    fn with_scene<T>(&mut self, body: impl FnOnce(&mut Viewport, &mut Project, &Scene) -> T) -> T {
         let camera =
             self.look.as_ref().and_then(|look| look::camera(self.project.document(), look.camera.as_ref()?));
         let slices = self.viewport.slice.is_on();
-        let flat = slices.then(|| flatten(self.project.document(), catalog()).into_owned());
+        let flat = slices.then(|| self.flat());
         let scene = Scene {
             look: self.look.as_ref(),
             pictures: &self.pictures,
@@ -218,15 +251,15 @@ impl App {
             bounds: self.lattice.as_ref().map(solving::bounds),
             problem: self.problem(),
             is_busy: self.figures.running.is_some() || self.figures.adapter.is_none(),
-            flat: flat.as_ref(),
+            flat: flat.as_deref(),
         };
-        body(&mut self.viewport, &mut self.project, &scene);
+        body(&mut self.viewport, &mut self.project, &scene)
     }
 
     fn follow_frames(&mut self, ui: &Ui) {
         if self.spanned != Some(self.project.revision()) {
             self.spanned = Some(self.project.revision());
-            let flat = flatten(self.project.document(), catalog());
+            let flat = self.flat();
             self.player.set_span(super::player::span(&flat));
         }
         self.player.advance(ui.input(|input| input.time), self.settings.fps);
@@ -236,85 +269,14 @@ impl App {
         // What has keys is shown and set as it is at the frame.
         self.project.look_at(self.asks_frame());
     }
-
-    fn page(&mut self, ui: &mut Ui) {
-        let choice = self.start.show(ui, &self.presets, &self.settings.recent);
-        match choice {
-            Some(start::Choice::Preset(idx)) => self.open_preset(idx),
-            Some(start::Choice::Recent(path)) => self.open(&path),
-            Some(start::Choice::Action(action)) => self.perform(&ui.ctx().clone(), action),
-            None => {}
-        }
-    }
-
-    fn editor(&mut self, ui: &mut Ui) {
-        if self.has_frames() {
-            Panel::bottom("timeline").show(ui, |ui| {
-                timeline::show(ui, &mut self.player, &mut self.settings.fps);
-            });
-        }
-        let width = self.settings.inspector_width;
-        let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
-        let context = inspector::Context {
-            selection: &self.selection,
-            statuses: &self.statuses,
-            opened: self.canvas.group(),
-            frame: self.asks_frame(),
-            takes_keyboard: std::mem::take(&mut self.inspects),
-        };
-        let shown = panel.show(ui, |ui| {
-            // What is too wide is cut: a panel that grew with it would move the canvas with each selection.
-            let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
-            let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
-            inside.set_clip_rect(rect.expand(4.0).intersect(ui.clip_rect()));
-            inspector::show(&mut inside, &mut self.project, &context)
-        });
-        self.settings.inspector_width = shown.response.rect.width();
-        if let Some(name) = shown.inner {
-            self.selection.only(&name);
-            self.canvas.reveal(&name);
-        }
-        // Of the window's height enough for a graph of seven layers to be read.
-        let usual = (CANVAS_SHARE * ui.ctx().content_rect().height()).round();
-        let height = self.settings.canvas_height.unwrap_or(usual);
-        let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
-        let shown = panel.frame(Frame::new()).show(ui, |ui| {
-            let (project, selection) = (&mut self.project, &mut self.selection);
-            self.canvas.show(ui, project, selection, &self.statuses, &self.thumbnails)
-        });
-        let height = shown.response.rect.height();
-        if (height - usual).abs() > 1.0 && ui.input(|input| input.pointer.any_down()) {
-            self.settings.canvas_height = Some(height);
-        }
-        for request in shown.inner {
-            match request {
-                Request::Show(name) => self.chosen = Some(name),
-                Request::Inspect(name) => {
-                    self.selection.only(&name);
-                    self.canvas.reveal(&name);
-                    self.inspects = true;
-                }
-                Request::SavePreset(name) => self.ask_preset(&name),
-            }
-        }
-        let frame = Frame::central_panel(ui.style()).inner_margin(6.0);
-        CentralPanel::default().frame(frame).show(ui, |ui| {
-            let before = self.project.revision();
-            self.with_scene(|viewport, project, scene| viewport.show(ui, project, scene));
-            // A hand on a camera with keys sets one, at a frame that stands.
-            let camera = self.look.as_ref().and_then(|look| look.camera.as_ref());
-            if before != self.project.revision()
-                && camera.is_some_and(|name| Viewport::has_keys(self.project.document(), name))
-            {
-                self.player.stop();
-            }
-        });
-    }
 }
 
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        if self.hands_over(&context) {
+            return;
+        }
         self.listen(&context);
         for action in action::pressed(&context, self.is_open && self.canvas.has_keys()) {
             if self.possible().is(action) {
@@ -322,11 +284,8 @@ impl eframe::App for App {
             }
         }
         self.follow_frames(ui);
-        self.look = if self.is_open {
-            look::look(&flatten(self.project.document(), catalog()), self.chosen.as_deref())
-        } else {
-            None
-        };
+        self.look = if self.is_open { look::look(&self.flat(), self.chosen.as_deref()) } else { None };
+        self.over(ui);
         let title = self.title();
         let asked = Panel::top("menu").show(ui, |ui| menu::show(ui, self.possible(), &title)).inner;
         asked.into_iter().for_each(|action| self.perform(&context, action));
@@ -340,13 +299,6 @@ impl eframe::App for App {
         } else {
             CentralPanel::default().show(ui, |ui| self.page(ui));
         }
-        match self.palette.show(ui, self.possible(), &self.presets) {
-            Some(palette::Choice::Action(action)) => self.perform(&context, action),
-            Some(palette::Choice::Preset(idx)) => self.open_preset(idx),
-            None => {}
-        }
-        shortcuts::show(ui, &mut self.shows_shortcuts);
-        self.files(ui);
         self.safety(ui);
         self.toasts.show(ui);
         if self.is_open {
@@ -355,7 +307,7 @@ impl eframe::App for App {
     }
 
     fn on_exit(&mut self) {
-        self.settings.save(Settings::file().as_deref());
+        self.remember();
         self.end();
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! A tone_map is not waited for: what it reads is looked at, and its exposure and curve are applied in the window,
 //! so that they follow a slider without a new picture. Without a choice it is the last tone_map that is wired,
-//! else the last node that gives a picture. Pure functions of the document, tested here.
+//! else the last picture that a camera sees, else the last of any. Pure functions of the document, tested here.
 
 use std::collections::HashSet;
 
@@ -37,7 +37,13 @@ pub fn look(document: &Document, chosen: Option<&str>) -> Option<Look> {
             let mut nodes = nodes.filter(|(_, node)| (node.type_id == "tone_map") == is_tone);
             nodes.find_map(|(name, _)| of_node(document, name))
         };
-        last(true).or_else(|| last(false))
+        let through_camera = || {
+            let mut nodes = document.nodes.keys().rev().filter_map(|name| of_node(document, name));
+            nodes.find(|(_, source, _)| {
+                above(document, &source.node).iter().any(|name| document.nodes[*name].type_id == CAMERA)
+            })
+        };
+        last(true).or_else(through_camera).or_else(|| last(false))
     })?;
     let above = above(document, &chosen.1.node);
     let of_kind = |kind: &str| above.iter().find(|name| document.nodes[**name].type_id == kind);
@@ -189,6 +195,20 @@ mod tests {
             !harmless(&document).contains(&"save".to_owned())
                 && !harmless(&document).contains(&"loose".to_owned())
         );
+    }
+
+    #[test]
+    fn what_a_camera_sees_goes_before_a_chart() {
+        let text = r#"{"tyndall": 1, "nodes": {"cloud": {"type": "shape"}, "camera": {"type": "camera"},
+            "seen": {"type": "transfer_function"}, "bars": {"type": "histogram"}, "save": {"type": "save_image"}},
+            "wires": ["cloud.volume -> seen.volume", "cloud.volume -> bars.volume", "camera.camera -> seen.camera",
+            "bars.image -> save.image"]}"#;
+        let document = Document::parse(text, Path::new("")).unwrap();
+        let source = |document: &Document| look(document, None).unwrap().source.to_string();
+        assert_eq!(source(&document), "seen.image");
+        let mut blind = document.clone();
+        blind.wires.retain(|wire| wire.from.node != "camera");
+        assert_eq!(source(&blind), "bars.image");
     }
 
     #[test]

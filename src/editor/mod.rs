@@ -30,6 +30,7 @@ mod snapshot;
 mod status;
 mod theme;
 mod viewport;
+mod window;
 mod worker;
 
 use std::path::Path;
@@ -74,16 +75,7 @@ pub fn open(graph: Option<&Path>, adapter: &AdapterChoice) -> Result<(), EditorE
         let remedy = "no Vulkan, Metal or DX12 driver was found; `tyndall doctor` says what to install";
         return Err(EditorError::Window(remedy.to_owned()));
     }
-    let options = eframe::NativeOptions {
-        viewport: egui::ViewportBuilder::default().with_title("Tyndall").with_inner_size([1280.0, 800.0]),
-        ..Default::default()
-    };
-    let adapter = adapter.clone();
-    let create: eframe::AppCreator = Box::new(move |context| {
-        Ok(Box::new(App::new(&context.egui_ctx, project, &adapter, project::state_folder())))
-    });
-    eframe::run_native("tyndall", options, create)
-        .map_err(|error| EditorError::Window(format!("the window cannot be opened: {error}")))
+    window::run(project, adapter)
 }
 
 /// A graph, or a volume or folder of frames lit by [`template::new_graph`].

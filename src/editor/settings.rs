@@ -61,7 +61,7 @@ impl Default for Settings {
             theme: ThemeChoice::Dark,
             scale: 1.0,
             recent: Vec::new(),
-            inspector_width: 300.0,
+            inspector_width: 324.0,
             canvas_height: None,
             folder: None,
             fps: 24.0,

@@ -57,17 +57,80 @@ pub struct AdapterReport {
 /// Features without which nothing works: trilinear sampling of 32-bit fields.
 const REQUIRED: wgpu::Features = wgpu::Features::FLOAT32_FILTERABLE;
 
+/// What a device says of itself, ours or the window's: that it is gone, and the first error that no scope took.
+#[derive(Debug, Clone, Default)]
+pub struct Faults {
+    /// Why the device is gone; it stays so.
+    lost: Arc<Mutex<Option<String>>>,
+    uncaptured: Arc<Mutex<Option<String>>>,
+    /// `None` in tests alone.
+    device: Option<wgpu::Device>,
+}
+
+impl Faults {
+    /// Listens to a device from now on. One that nobody listens to ends the program at its first error.
+    pub fn of(device: &wgpu::Device) -> Self {
+        let faults = Self { device: Some(device.clone()), ..Self::default() };
+        let seen = Self { device: None, ..faults.clone() };
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                *seen.lost.lock().unwrap() = Some(message);
+            }
+        });
+        let seen = Self { device: None, ..faults.clone() };
+        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+            seen.uncaptured.lock().unwrap().get_or_insert(error.to_string());
+        }));
+        faults
+    }
+
+    /// Why the device is gone, if it is.
+    pub fn lost(&self) -> Option<String> {
+        self.lost.lock().unwrap().clone()
+    }
+
+    /// The same, and asks the device first: one that nothing is asked of does not say that it is gone.
+    pub fn look(&self) -> Option<String> {
+        if let Some(device) = &self.device {
+            // Fails where the device is gone, which is what is asked.
+            let _ = device.poll(wgpu::PollType::Poll);
+        }
+        self.lost()
+    }
+
+    /// The first error since this was asked, told once.
+    pub fn take_error(&self) -> Option<String> {
+        self.uncaptured.lock().unwrap().take()
+    }
+
+    /// As if the driver had said that the device is gone.
+    #[cfg(test)]
+    pub(crate) fn lose(&self, why: &str) {
+        *self.lost.lock().unwrap() = Some(why.to_owned());
+    }
+}
+
 /// Bytes held on the device, and the most that were held at once.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
     now: AtomicU64,
     peak: AtomicU64,
+    #[cfg(test)]
+    is_full: std::sync::atomic::AtomicBool,
 }
 
 impl Memory {
     pub(super) fn add(&self, bytes: u64) {
         let now = self.now.fetch_add(bytes, Ordering::Relaxed) + bytes;
         self.peak.fetch_max(now, Ordering::Relaxed);
+    }
+
+    /// Whether a test says that there is no more room; a driver says so by an error.
+    pub(super) fn is_full(&self) -> bool {
+        #[cfg(test)]
+        return self.is_full.load(Ordering::Relaxed);
+        #[cfg(not(test))]
+        false
     }
 
     pub(super) fn sub(&self, bytes: u64) {
@@ -82,10 +145,7 @@ pub struct Gpu {
     pub(super) memory: Arc<Memory>,
     pub(super) pipelines: Mutex<HashMap<String, Arc<Pipeline>>>,
     pub(super) timestamps: bool,
-    /// Why the device is gone; it stays so.
-    lost: Arc<Mutex<Option<String>>>,
-    /// The first error since the last check that no scope took.
-    uncaptured: Arc<Mutex<Option<String>>>,
+    faults: Faults,
     stage_times: Mutex<Option<Vec<super::StageTime>>>,
     /// GPU time since it was last taken.
     gpu_ms: Mutex<f64>,
@@ -146,26 +206,14 @@ impl Gpu {
             ..Default::default()
         }))
         .map_err(|error| GpuError::Adapter(format!("{} cannot be opened: {error}", report.name)))?;
-        let lost = Arc::new(Mutex::new(None));
-        let seen = Arc::clone(&lost);
-        device.set_device_lost_callback(move |reason, message| {
-            if reason != wgpu::DeviceLostReason::Destroyed {
-                *seen.lock().unwrap() = Some(message);
-            }
-        });
-        let uncaptured = Arc::new(Mutex::new(None));
-        let seen = Arc::clone(&uncaptured);
-        device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
-            seen.lock().unwrap().get_or_insert(error.to_string());
-        }));
+        let faults = Faults::of(&device);
         Ok(Self {
             timestamps: device.features().contains(timing),
             device,
             queue,
             memory: Arc::default(),
             pipelines: Mutex::default(),
-            lost,
-            uncaptured,
+            faults,
             stage_times: Mutex::new(None),
             gpu_ms: Mutex::default(),
             report,
@@ -179,8 +227,8 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::Lost`], [`GpuError::Device`].
     pub fn check(&self, work: &str) -> Result<(), GpuError> {
-        let uncaptured = self.uncaptured.lock().unwrap().take();
-        if let Some(why) = self.lost.lock().unwrap().clone() {
+        let uncaptured = self.faults.take_error();
+        if let Some(why) = self.faults.lost() {
             return Err(GpuError::Lost(why));
         }
         uncaptured.map_or(Ok(()), |error| Err(GpuError::Device(format!("{work}: {error}"))))
@@ -189,7 +237,13 @@ impl Gpu {
     /// As if the driver had said that the device is gone.
     #[cfg(test)]
     pub(crate) fn lose(&self, why: &str) {
-        *self.lost.lock().unwrap() = Some(why.to_owned());
+        self.faults.lose(why);
+    }
+
+    /// As if nothing more had room on it.
+    #[cfg(test)]
+    pub(crate) fn fill(&self) {
+        self.memory.is_full.store(true, Ordering::Relaxed);
     }
 
     /// Name, driver and limits of the open adapter.

@@ -152,7 +152,7 @@ impl Gpu {
                 | wgpu::TextureUsages::COPY_DST,
             view_formats: &[],
         });
-        if pollster::block_on(scope.pop()).is_some() {
+        if pollster::block_on(scope.pop()).is_some() || self.memory.is_full() {
             return Err(self.out_of_memory());
         }
         let view = texture.create_view(&wgpu::TextureViewDescriptor::default());
@@ -254,7 +254,7 @@ impl Gpu {
             usage,
             mapped_at_creation: false,
         });
-        if pollster::block_on(scope.pop()).is_some() {
+        if pollster::block_on(scope.pop()).is_some() || self.memory.is_full() {
             return Err(self.out_of_memory());
         }
         Ok(Buffer { buffer, counted: self.count(bytes) })

@@ -23,7 +23,7 @@ mod stage;
 #[cfg(test)]
 pub(crate) mod testing;
 
-pub use device::{AdapterChoice, AdapterReport, Gpu, adapters};
+pub use device::{AdapterChoice, AdapterReport, Faults, Gpu, adapters};
 pub use field::{Buffer, Format, Sampler, Texture};
 pub use layout::{Mirror, wgsl_constant, wgsl_members};
 pub use record::{Recorder, StageTime};

@@ -62,6 +62,16 @@ impl Files {
         self.may_close
     }
 
+    /// Whether a dialog or the question whether to save has the keyboard.
+    pub fn is_asking(&self) -> bool {
+        self.dialog.is_some() || self.waiting.is_some()
+    }
+
+    /// Ends the window without a question.
+    pub fn close(&mut self) {
+        self.may_close = true;
+    }
+
     /// Asks for a graph.
     pub fn ask_graph(&mut self, folder: Option<&Path>) {
         let is_graph = |path: &Path| path.extension().is_some_and(|ending| ending == "json");
@@ -143,6 +153,7 @@ impl App {
             match Project::load(path) {
                 Ok(project) => {
                     self.settings.opened(path);
+                    self.remember();
                     self.show(project);
                 }
                 Err(error) => self.toasts.complain(format!("{}: {error}", path.display())),
@@ -183,7 +194,8 @@ impl App {
         self.viewport.fit();
         self.pictures.clear();
         self.thumbnails.clear();
-        (self.chosen, self.look, self.lattice, self.asked, self.spanned) = (None, None, None, None, None);
+        (self.chosen, self.look, self.lattice) = (None, None, None);
+        (self.asked, self.spanned, self.flat) = (None, None, None);
         self.player = Default::default();
     }
 
@@ -214,6 +226,7 @@ impl App {
         match self.project.save_as(&path) {
             Ok(()) => {
                 self.settings.opened(&path);
+                self.remember();
                 self.toasts.say(format!("Saved {}", path.display()));
                 true
             }
@@ -256,6 +269,11 @@ impl App {
 
     fn dialogs(&mut self, ui: &Ui) {
         let Some((dialog, purpose)) = &mut self.files.dialog else { return };
+        // In a field the dialog's own takes the keyboard from it alone.
+        if ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape)) {
+            (self.files.dialog, self.files.after_save) = (None, None);
+            return;
+        }
         dialog.update(ui.ctx());
         let purpose = *purpose;
         if let Some(path) = dialog.take_picked() {

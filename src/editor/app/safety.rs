@@ -8,6 +8,8 @@ use egui::{Panel, Ui, Window};
 
 use super::App;
 use crate::editor::project::{Autosave, Recoverable, recoverable, versions};
+use crate::editor::window;
+use crate::gpu::Faults;
 
 /// What was not saved, and what was saved before.
 pub struct Safety {
@@ -17,13 +19,21 @@ pub struct Safety {
     /// What another program left when it ended without saving.
     found: Vec<Recoverable>,
     shows_versions: bool,
+    /// Of the window's own device, and where to leave the graph when it is gone.
+    device: Option<(Faults, window::Place)>,
 }
 
 impl Safety {
     /// In the program's own folder.
     pub fn new(state: Option<PathBuf>) -> Self {
         let found = state.as_deref().map(recoverable).unwrap_or_default();
-        Self { autosave: state.as_deref().map(Autosave::new), found, state, shows_versions: false }
+        Self {
+            autosave: state.as_deref().map(Autosave::new),
+            found,
+            state,
+            shows_versions: false,
+            device: None,
+        }
     }
 
     /// Shows the earlier versions, or hides them.
@@ -33,6 +43,40 @@ impl Safety {
 }
 
 impl App {
+    /// Watches the window's own device.
+    pub fn watch(&mut self, faults: Faults, place: window::Place) {
+        self.safety.device = Some((faults, place));
+    }
+
+    /// Says that this window stands in place of one whose device was lost.
+    pub fn tell_lost(&mut self, why: &str) {
+        // Not every driver says why.
+        let why = if why.is_empty() { String::new() } else { format!(" ({why})") };
+        self.toasts.complain(format!(
+            "The window's GPU was lost{why} and opened anew. The graph and its history are as they were."
+        ));
+    }
+
+    /// Whether the window's device is gone. Then its graph is left to the next one, it closes, and nothing is to be
+    /// drawn: egui-wgpu ends the program where it cannot hand on what is. What is written down stays until the end.
+    pub(super) fn hands_over(&mut self, context: &egui::Context) -> bool {
+        let Some((faults, place)) = &self.safety.device else { return false };
+        let Some(why) = faults.look() else {
+            if let Some(error) = faults.take_error() {
+                self.toasts.complain(format!("The window was not drawn as it should be: {error}"));
+            }
+            return false;
+        };
+        if !self.files.is_closing() {
+            let project = self.is_open.then(|| std::mem::take(&mut self.project));
+            *place.borrow_mut() = Some(window::Left { project, why: Some(why) });
+            self.is_open = false;
+            self.files.close();
+        }
+        context.send_viewport_cmd(egui::ViewportCommand::Close);
+        true
+    }
+
     /// Writes down what is not saved, and asks what to do with what was not.
     pub(super) fn safety(&mut self, ui: &Ui) {
         if let Some(autosave) = self.safety.autosave.as_mut().filter(|_| self.is_open) {
@@ -73,6 +117,7 @@ impl App {
 
     /// The window ends. Where nobody agreed to that (the display is gone), what is not saved stays written down.
     pub(super) fn end(&mut self) {
+        // What was left to another window is not found there once more.
         if self.files.is_closing() {
             self.give_up();
         }

@@ -9,10 +9,9 @@ use crate::editor::player::LOADER;
 use crate::editor::viewport::{self, Picture, SLICE, Tone};
 use crate::editor::worker::{Ask, Reply, Solved};
 use crate::gpu::OUT_OF_MEMORY;
-use crate::graph::{Document, Event, Node, PortType, Wire, flatten};
+use crate::graph::{Document, Event, Node, PortType, Wire};
 use crate::image::tonemap::Curve;
 use crate::image::{Image, Table};
-use crate::nodes::catalog;
 use crate::volume::Lattice;
 use crate::wire::Medium;
 
@@ -57,7 +56,7 @@ impl App {
             return;
         }
         let revision = self.project.revision();
-        let flat = flatten(self.project.document(), catalog());
+        let flat = self.flat();
         let slice = self.viewport.slice.node(&flat);
         let is_known = self.asked.as_ref().is_some_and(|asked| {
             // A pointer that goes down changes nothing; when it goes up, the rest is made up for.
@@ -69,8 +68,7 @@ impl App {
         if is_known {
             return;
         }
-        let mut document = flat.into_owned();
-        document.frame = frame;
+        let document = Document::clone(&flat);
         let changed: Vec<String> = match &self.asked {
             Some(asked) => look::changed(&asked.document, &document).into_iter().map(str::to_owned).collect(),
             None => Vec::new(),

@@ -108,7 +108,7 @@ impl Canvas {
         let in_nodes =
             focused.is_some_and(|id| self.scene.nodes.iter().any(|node| Self::node_id(&node.name) == id));
         self.is_focused = in_nodes;
-        let is_busy = self.search.is_some() || self.name_field.is_some();
+        let is_busy = self.is_behind || self.search.is_some() || self.name_field.is_some();
         self.has_keys = (is_over || in_nodes) && !is_busy && !ui.ctx().text_edit_focused();
         if let Some(at) = ui.input(|input| input.pointer.interact_pos()) {
             self.pointer = at;

@@ -110,7 +110,6 @@ impl Canvas {
 
 #[cfg(test)]
 mod tests {
-    use std::collections::HashSet;
 
     use super::*;
     use crate::graph::Document;
@@ -124,7 +123,7 @@ mod tests {
             for place in places {
                 document.add_node("sun", crate::graph::Node::new("sun"), *place);
             }
-            Scene::new(&document, catalog(), &HashSet::new())
+            Scene::new(&document, catalog())
         };
         let best = |corner: Corner, places: &[[f64; 2]]| corner.best(screen, View::default(), &scene(places));
         assert_eq!(best(Corner::RightBottom, &[]), Corner::RightBottom);

@@ -30,7 +30,7 @@ mod toast;
 mod told;
 mod view;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::rc::Rc;
 
 use egui::{Pos2, Rect, Sense, TextureHandle, Vec2};
@@ -60,7 +60,7 @@ pub struct Canvas {
     screen: Option<Rect>,
     scene: Rc<Scene>,
     /// What the scene was made of.
-    scene_of: Option<(u64, HashSet<String>)>,
+    scene_of: Option<u64>,
     gesture: Gesture,
     /// What was clicked and is no node.
     chosen: Option<Chosen>,
@@ -78,6 +78,8 @@ pub struct Canvas {
     /// Where the pointer was last, on the screen.
     pointer: Pos2,
     has_keys: bool,
+    /// Something that stands over it has the keys.
+    is_behind: bool,
     /// Whether a node has the keyboard.
     is_focused: bool,
     /// Gets the keyboard when it is drawn: what is no widget yet must not have it.
@@ -194,31 +196,31 @@ impl Canvas {
         self.commands.push(command);
     }
 
+    /// Whether something stands over it that has the keys: a palette, a dialog.
+    pub fn stay_behind(&mut self, is_behind: bool) {
+        self.is_behind = is_behind;
+    }
+
     /// Whether keys are meant for the canvas: the pointer is over it or a node has the focus.
     pub fn has_keys(&self) -> bool {
         self.has_keys
     }
 
     /// Takes its place on the screen, and shows there what it is to show: all of what was entered, and still all
-    /// while nobody has panned or zoomed, whatever becomes of the panel and of the pictures in the nodes.
+    /// while nobody has panned or zoomed, whatever becomes of the panel.
     fn place(&mut self, screen: Rect, desk: &Desk) {
         let is_fitted = self.fitted == Some(self.view) && matches!(self.gesture, Gesture::None);
         let is_first = self.screen.is_none() || std::mem::take(&mut self.entered);
         let is_resized = self.screen != Some(screen);
         self.screen = Some(screen);
         self.view.origin = screen.min;
-        let n_pictured = self.n_pictured();
         self.update(desk);
-        if is_first || is_fitted && (is_resized || self.n_pictured() != n_pictured) {
+        if is_first || is_fitted && is_resized {
             self.fit_all();
         }
         if let Some(node) = self.reveal_next.take().and_then(|name| self.scene.node(&name)) {
             self.view.come_near(node.rect, screen.size());
         }
-    }
-
-    fn n_pictured(&self) -> usize {
-        self.scene_of.as_ref().map_or(0, |(_, pictured)| pictured.len())
     }
 
     fn fit_all(&mut self) {
@@ -231,22 +233,26 @@ impl Canvas {
         self.is_focused
     }
 
-    /// Brings the keyboard to the selected node, or to the first.
-    pub fn take_keyboard(&mut self, selection: &Selection) {
-        let inner = selection.active().and_then(|path| desk::inner_name(&self.group, path));
-        let first = || self.scene.nodes.first().map(|node| node.name.as_str());
-        self.focus_next = inner.or_else(first).map(str::to_owned);
+    /// Brings the keyboard to the selected node, or to the first, which is then selected.
+    pub fn take_keyboard(&mut self, selection: &mut Selection) {
+        let inner =
+            selection.active().and_then(|path| desk::inner_name(&self.group, path)).map(str::to_owned);
+        let name = inner.or_else(|| {
+            let first = self.scene.nodes.first()?.name.clone();
+            selection.only(&desk::path(&self.group, &first));
+            Some(first)
+        });
+        self.focus_next = name;
     }
 
     /// Makes the scene anew where the document is another, and forgets what is no more.
     fn update(&mut self, desk: &Desk) {
         let document = desk.document();
-        let pictured = document.nodes.keys().filter(|name| desk.thumbnail(name).is_some());
-        let made_of = (desk.project.revision(), pictured.cloned().collect::<HashSet<_>>());
-        if self.scene_of.as_ref() == Some(&made_of) {
+        let made_of = desk.project.revision();
+        if self.scene_of == Some(made_of) {
             return;
         }
-        let scene = Scene::new(document, catalog(), &made_of.1);
+        let scene = Scene::new(document, catalog());
         self.scene = Rc::new(if desk.is_in_group() { scene.with_edges(document) } else { scene });
         self.scene_of = Some(made_of);
         self.chosen.take_if(|chosen| !chosen.is_in(document));

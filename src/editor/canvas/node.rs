@@ -97,12 +97,20 @@ impl Brush<'_> {
             self.text(at, Align2::LEFT_BOTTOM, &node.type_id, type_size, faint, head.width() - 2.0 * inset);
         }
         self.state(state, status, look.time);
-        if let Some(picture) = picture {
+        if node.has_picture {
             let top = rect.bottom() - (FOOTER + THUMBNAIL + 2.0) * zoom;
             let size = vec2(rect.width() - 12.0 * zoom, (THUMBNAIL - 4.0) * zoom);
             let place = Rect::from_min_size(pos2(rect.left() + 6.0 * zoom, top), size);
             let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
-            self.painter.image(picture, place, uv, Color32::WHITE.gamma_multiply(opacity));
+            match picture {
+                Some(picture) => {
+                    self.painter.image(picture, place, uv, Color32::WHITE.gamma_multiply(opacity));
+                }
+                None => {
+                    let empty = self.theme.background.gamma_multiply(opacity);
+                    self.painter.rect_filled(place, 2.0 * zoom, empty);
+                }
+            }
         }
         self.foot(node, status, opacity);
         if node.bypass && !node.mute {

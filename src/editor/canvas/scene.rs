@@ -5,13 +5,15 @@
 //! Wires are cubics that leave an output and reach an input level. Tested by ports inside of their nodes,
 //! by what is found at a point, and by wires that pass through their ends.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
 use super::edge;
 use crate::graph::layout::layered;
-use crate::graph::{Catalog, Category, Document, End, Node, PortSpec, PortType, Side, Wire};
+use crate::graph::{
+    Catalog, Category, Document, End, Node, NodeSpec, ParamKind, PortSpec, PortType, Side, Wire,
+};
 
 pub const WIDTH: f32 = 184.0;
 /// Of a header; of the second line in it that tells the type of a node that has another name.
@@ -39,6 +41,8 @@ pub struct NodeShape {
     pub type_id: String,
     pub category: Option<Category>,
     pub is_group: bool,
+    /// There is room for its picture.
+    pub has_picture: bool,
     pub mute: bool,
     pub bypass: bool,
     pub rect: Rect,
@@ -98,8 +102,9 @@ impl NodeShape {
 }
 
 impl Scene {
-    /// Of a document; nodes in `pictured` are taller by a thumbnail.
-    pub fn new(document: &Document, catalog: Catalog, pictured: &HashSet<String>) -> Self {
+    /// Of a document. A node that gives a picture has room for it from the start, so that nothing moves when the
+    /// picture comes.
+    pub fn new(document: &Document, catalog: Catalog) -> Self {
         let mut wired: HashMap<&str, Vec<&Wire>> = HashMap::new();
         for wire in &document.wires {
             wired.entry(&wire.from.node).or_default().push(wire);
@@ -110,10 +115,12 @@ impl Scene {
         let mut nodes = Vec::with_capacity(document.nodes.len());
         for (name, node) in &document.nodes {
             let wires = wired.get(name.as_str()).map_or(&[][..], Vec::as_slice);
+            let spec = catalog.find(&node.type_id);
             let mut shape = NodeShape {
                 name: name.clone(),
                 type_id: node.type_id.clone(),
-                category: catalog.find(&node.type_id).map(|spec| spec.category),
+                category: spec.map(|spec| spec.category),
+                has_picture: spec.is_some_and(gives_picture),
                 is_group: node.inside.is_some(),
                 mute: node.mute,
                 bypass: node.bypass,
@@ -122,7 +129,7 @@ impl Scene {
             };
             shape.ports = ports(&shape, node, catalog, wires);
             let rows = [Side::Input, Side::Output].map(|side| shape.side(side).count());
-            let picture = if pictured.contains(name) { THUMBNAIL } else { 0.0 };
+            let picture = if shape.has_picture { THUMBNAIL } else { 0.0 };
             let height = shape.header + rows[0].max(rows[1]) as f32 * ROW + picture + FOOTER + 2.0 * PAD;
             shape.rect = Rect::from_min_size(Pos2::ZERO, vec2(WIDTH, height));
             nodes.push(shape);
@@ -246,6 +253,12 @@ impl Scene {
     }
 }
 
+/// Whether a node of this kind is run for a picture to look at: one that writes files is not.
+fn gives_picture(spec: &NodeSpec) -> bool {
+    let writes = spec.params.iter().any(|param| matches!(param.kind, ParamKind::OutPath));
+    !writes && spec.outputs.iter().any(|port| port.kind == PortType::Image)
+}
+
 pub fn size_of(rect: Rect) -> [f64; 2] {
     [rect.width(), rect.height()].map(f64::from)
 }
@@ -257,6 +270,7 @@ impl Default for NodeShape {
             type_id: String::new(),
             category: None,
             is_group: false,
+            has_picture: false,
             mute: false,
             bypass: false,
             rect: Rect::ZERO,

@@ -206,7 +206,7 @@ impl Canvas {
             let (mark, _) = ui.allocate_exact_size(vec2(6.0, 14.0), egui::Sense::hover());
             ui.painter().rect_filled(mark, 2.0, theme.category(Some(spec.category)));
             let button = egui::Button::selectable(is_chosen, text).truncate();
-            let button = ui.add_sized(vec2(ui.available_width(), 20.0), button);
+            let button = ui.add(button.min_size(vec2(ui.available_width(), 20.0)));
             let label = || format!("add {}", spec.id);
             button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, label()));
             button

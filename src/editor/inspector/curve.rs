@@ -5,7 +5,9 @@
 //! The plot spans the points themselves, so a point at its end goes further out by being dragged over the border or
 //! typed. A drag stops at the plot's upper and lower border, which are the limits of the column.
 
-use egui::{Color32, ComboBox, Mesh, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2};
+use egui::{
+    Align, Color32, ComboBox, Layout, Mesh, Pos2, Rect, Response, Sense, Shape, Stroke, Ui, pos2, vec2,
+};
 use serde_json::Value as Json;
 
 use super::expression::evaluate;
@@ -87,17 +89,24 @@ fn moved(slot: &mut Slot, rows: &Rows, idx: usize, area: &Area, response: &Respo
 /// The numbers of the chosen point.
 fn point(ui: &mut Ui, slot: &mut Slot, rows: &Rows, columns: &[&str], chosen: usize) -> Option<String> {
     let mut message = None;
+    let cell = vec2((ui.available_width() - 16.0) / 3.0, ui.spacing().interact_size.y);
     ui.horizontal_wrapped(|ui| {
         for (part, column) in columns.iter().enumerate() {
             let row = &rows[chosen];
             let (id, name) = (slot.id().with(("number", chosen, part)), format!("{}.{column}", slot.name()));
-            ui.weak(*column);
-            let typed = entry(ui, id, &name, &text_of(row[part]), 48.0, |text| {
-                let mut rows = rows.clone();
-                rows[chosen][part] = evaluate(text)?;
-                slot.set(json(&rows), None)
+            // A name and its number wrap together.
+            let typed = ui.allocate_ui_with_layout(cell, Layout::left_to_right(Align::Center), |ui| {
+                ui.set_min_size(cell);
+                let label = ui.weak(*column).rect.width();
+                let width = cell.x - label.max(44.0) - 8.0;
+                ui.add_space(44.0 - label.min(44.0));
+                entry(ui, id, &name, &text_of(row[part]), width, |text| {
+                    let mut rows = rows.clone();
+                    rows[chosen][part] = evaluate(text)?;
+                    slot.set(json(&rows), None)
+                })
             });
-            message = message.take().or(typed);
+            message = message.take().or(typed.inner);
         }
         if let Some(rgb) = rgb_of(columns) {
             let row = &rows[chosen];

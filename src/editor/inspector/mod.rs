@@ -39,8 +39,6 @@ pub struct Context<'a> {
     pub statuses: &'a Statuses,
     /// The group that is opened on the canvas; empty for none.
     pub opened: &'a str,
-    /// The frame that is looked at, where there are several.
-    pub frame: Option<i64>,
     /// Whether it is to have the keyboard from now on.
     pub takes_keyboard: bool,
 }
@@ -51,7 +49,7 @@ pub fn show(ui: &mut Ui, project: &mut Project, context: &Context) -> Option<Str
     let opened = Some(context.opened).filter(|group| !group.is_empty());
     let named_node = |name| Some((name, project.document().node(name)?));
     let Some((name, node)) = context.selection.active().or(opened).and_then(named_node) else {
-        ui.weak("Select a node to see what it does and to change it.");
+        graph(ui, project);
         return None;
     };
     let heading =
@@ -74,7 +72,7 @@ pub fn show(ui: &mut Ui, project: &mut Project, context: &Context) -> Option<Str
     ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
         head(ui, spec, nodes.len());
         for param in spec.params {
-            row::show(ui, &mut Slot::new(project, &nodes, param, context.frame));
+            row::show(ui, &mut Slot::new(project, &nodes, param));
         }
         ui.separator();
         asked = report::ports(ui, project, &nodes[0], spec);
@@ -88,6 +86,25 @@ pub fn show(ui: &mut Ui, project: &mut Project, context: &Context) -> Option<Str
         project.end_gesture();
     }
     asked
+}
+
+/// What is shown where no node is selected: what the graph is about.
+fn graph(ui: &mut Ui, project: &mut Project) {
+    ui.weak("Select a node to see what it does and to change it.");
+    ui.separator();
+    ui.strong("About this graph");
+    let mut about = project.document().about.clone();
+    let field = egui::TextEdit::multiline(&mut about).hint_text("What it shows, and what for");
+    let field = ui.add(field.desired_rows(3).desired_width(f32::INFINITY));
+    named(&field, "about the graph");
+    if field.changed() {
+        project.edit_during(egui::Id::new("about the graph"), "describe the graph", |document| {
+            document.about = about;
+        });
+    }
+    if field.lost_focus() {
+        project.end_gesture();
+    }
 }
 
 /// The active node, then the others of its kind that are selected.

@@ -38,20 +38,38 @@ pub fn entry(
     width: f32,
     commit: impl FnOnce(&str) -> Result<(), String>,
 ) -> Option<String> {
+    entry_shown(ui, id, name, current, None, width, commit)
+}
+
+/// Such a line that shows another text, a shorter one, while nobody writes in it.
+pub fn entry_shown(
+    ui: &mut Ui,
+    id: egui::Id,
+    name: &str,
+    current: &str,
+    shown: Option<&str>,
+    width: f32,
+    commit: impl FnOnce(&str) -> Result<(), String>,
+) -> Option<String> {
     let mut draft: Option<Draft> = ui.data(|data| data.get_temp(id));
     let is_focused = ui.memory(|memory| memory.has_focus(id));
     if !is_focused && draft.as_ref().is_some_and(|draft| draft.instead_of != current) {
         draft = None;
     }
-    let mut text = draft.as_ref().map_or(current, |draft| &draft.text).to_owned();
+    let whole = draft.as_ref().map_or(current, |draft| &draft.text).to_owned();
+    let mut text = match shown {
+        Some(shown) if !is_focused && draft.is_none() => shown.to_owned(),
+        _ => whole.clone(),
+    };
     let is_refused = draft.as_ref().is_some_and(|draft| draft.message.is_some());
     let color = is_refused.then(|| ui.visuals().error_fg_color);
     let edit = TextEdit::singleline(&mut text).id(id).desired_width(f32::INFINITY).text_color_opt(color);
+    let edit = edit.vertical_align(egui::Align::Center);
     // With its margins, so that what stands after it has the room that it was left.
     let response = ui.add_sized(egui::vec2(width, ui.spacing().interact_size.y), edit);
     named(&response, name);
     if response.gained_focus() {
-        select_all(ui, id, &text);
+        select_all(ui, id, &whole);
     }
     if response.changed() {
         draft = Some(Draft { text: text.clone(), message: None, instead_of: current.to_owned() });

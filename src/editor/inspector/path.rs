@@ -4,9 +4,9 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Arc, Mutex};
 
 use egui::Ui;
-use egui_file_dialog::FileDialog;
+use egui_file_dialog::{DialogState, FileDialog};
 
-use super::number::{entry, named};
+use super::number::{entry_shown, named};
 use super::slot::Slot;
 use crate::graph::ParamKind;
 use crate::graph::spec::Default;
@@ -29,9 +29,17 @@ pub fn show(ui: &mut Ui, slot: &mut Slot, width: f32) -> Option<String> {
     let current = slot.json().as_str().unwrap_or_default().to_owned();
     let (id, name) = (slot.id().with("path"), slot.name());
     let is_nullable = slot.spec.default == Default::Null;
-    let typed = entry(ui, id, &name, &current, width - 30.0, |text| match text.is_empty() && is_nullable {
-        true => slot.set(serde_json::Value::Null, None),
-        false => slot.set(text.into(), None),
+    let width = width - 30.0;
+    let shown = end_of(&current, |text| {
+        let font = egui::TextStyle::Body.resolve(ui.style());
+        // The margins of a field are 4 points each.
+        ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x + 8.0 <= width
+    });
+    let typed = entry_shown(ui, id, &name, &current, Some(&shown), width, |text| {
+        match text.is_empty() && is_nullable {
+            true => slot.set(serde_json::Value::Null, None),
+            false => slot.set(text.into(), None),
+        }
     });
     let response = ui.button("…").on_hover_text("Choose a file");
     named(&response, &format!("{name} pick"));
@@ -39,6 +47,16 @@ pub fn show(ui: &mut Ui, slot: &mut Slot, width: f32) -> Option<String> {
         open(ui, slot, &current);
     }
     typed.or_else(|| take_picked(ui, slot))
+}
+
+/// As much of the end of a path as fits: the file's name is what one looks for.
+fn end_of(path: &str, fits: impl Fn(&str) -> bool) -> String {
+    if fits(path) {
+        return path.to_owned();
+    }
+    let ends = path.char_indices().skip(1).map(|(at, _)| format!("…{}", &path[at..]));
+    let mut ends = ends.skip_while(|end| !fits(end));
+    ends.next().unwrap_or_else(|| path.to_owned())
 }
 
 fn open(ui: &Ui, slot: &Slot, current: &str) {
@@ -76,6 +94,12 @@ fn take_picked(ui: &Ui, slot: &mut Slot) -> Option<String> {
 pub fn dialog(ui: &mut Ui) {
     let Some(shared) = picker(ui) else { return };
     let Ok(mut picker) = shared.lock() else { return };
+    if matches!(picker.dialog.state(), DialogState::Open)
+        && ui.input_mut(|input| input.consume_key(egui::Modifiers::NONE, egui::Key::Escape))
+    {
+        ui.data_mut(|data| data.remove::<Shared>(egui::Id::new("path picker")));
+        return;
+    }
     picker.dialog.update(ui.ctx());
     if let Some(path) = picker.dialog.take_picked() {
         picker.picked = Some(path);
@@ -103,6 +127,14 @@ fn relative(base: &Path, path: &Path) -> PathBuf {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_end_of_a_path_is_shown() {
+        let shown = |path: &str, most: usize| end_of(path, |text| text.chars().count() <= most);
+        assert_eq!(shown("a/plume.vdb", 11), "a/plume.vdb");
+        assert_eq!(shown("/data/plüme.vdb", 10), "…plüme.vdb");
+        assert_eq!(shown("/data/plume.vdb", 0), "/data/plume.vdb");
+    }
 
     #[test]
     fn paths_start_at_the_graph() {

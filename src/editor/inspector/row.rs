@@ -142,7 +142,9 @@ fn vector(ui: &mut Ui, slot: &mut Slot, count: usize) -> Option<String> {
     let mut message = None;
     for line in 0..count.div_ceil(columns) {
         ui.horizontal(|ui| {
-            let width = ui.available_width() / columns as f32;
+            // As far to the right as sliders go.
+            let gaps = ui.spacing().item_spacing.x * columns as f32;
+            let width = (ui.available_width() - gaps) / columns as f32;
             for part in line * columns..count.min((line + 1) * columns) {
                 let axis = ["x", "y", "z"].get(part).filter(|_| count == 3);
                 let label = axis.map_or_else(|| part.to_string(), |axis| (*axis).to_owned());
@@ -150,11 +152,11 @@ fn vector(ui: &mut Ui, slot: &mut Slot, count: usize) -> Option<String> {
                 let taken = if count <= 4 {
                     let dragged = handle(ui, slot, part, &label, &suffix);
                     message = message.take().or(dragged);
-                    22.0
+                    16.0
                 } else {
-                    10.0
+                    0.0
                 };
-                let typed = field(ui, slot, part, &suffix, width - taken - 8.0);
+                let typed = field(ui, slot, part, &suffix, width - taken);
                 message = message.take().or(typed);
             }
         });

@@ -20,25 +20,18 @@ pub struct Slot<'a> {
     path: Vec<&'static str>,
     /// What may be written.
     pub spec: &'static ParamSpec,
-    /// The frame that is looked at, where there are several.
-    looked_at: Option<i64>,
 }
 
 impl<'a> Slot<'a> {
     /// A parameter that is in no record.
-    pub fn new(
-        project: &'a mut Project,
-        nodes: &'a [String],
-        spec: &'static ParamSpec,
-        looked_at: Option<i64>,
-    ) -> Self {
-        Self { project, nodes, path: vec![spec.name], spec, looked_at }
+    pub fn new(project: &'a mut Project, nodes: &'a [String], spec: &'static ParamSpec) -> Self {
+        Self { project, nodes, path: vec![spec.name], spec }
     }
 
     /// A member of this record.
     pub fn member(&mut self, spec: &'static ParamSpec) -> Slot<'_> {
         let path = self.path.iter().copied().chain([spec.name]).collect();
-        Slot { project: self.project, nodes: self.nodes, path, spec, looked_at: self.looked_at }
+        Slot { project: self.project, nodes: self.nodes, path, spec }
     }
 
     /// `medium.emission.flame`, by which tests and screen readers know its control.
@@ -64,12 +57,12 @@ impl<'a> Slot<'a> {
     /// The frame that is looked at; where none is, that of the first key, whose value then holds.
     pub fn frame(&self) -> i64 {
         let first = || Some(self.keys()?.first()?[0].as_f64()? as i64);
-        self.looked_at.or_else(first).unwrap_or(0)
+        self.document().frame.or_else(first).unwrap_or(0)
     }
 
     /// What keys and sequences are at.
     pub fn moment(&self) -> Moment {
-        Moment { frame: self.looked_at, is_aside: false }
+        Moment { frame: self.document().frame, is_aside: false }
     }
 
     /// What the file says.

@@ -20,7 +20,6 @@ struct Desk {
     selection: Selection,
     statuses: Statuses,
     opened: String,
-    frame: i64,
     takes_keyboard: bool,
     /// The node that a link asked for last.
     asked: Option<String>,
@@ -36,7 +35,6 @@ impl Desk {
             selection: &self.selection,
             statuses: &self.statuses,
             opened: &self.opened,
-            frame: Some(self.frame),
             takes_keyboard: std::mem::take(&mut self.takes_keyboard),
         };
         self.asked = show(ui, &mut self.project, &context).or(self.asked.take());
@@ -51,7 +49,9 @@ fn inspector(nodes: Json, wires: Json, selected: &[&str]) -> Inspector {
     let document = Document::parse(&text, &base).unwrap();
     let mut selection = Selection::default();
     selection.nodes.extend(selected.iter().map(|name| (*name).to_owned()));
-    let desk = Desk { project: Project::new(document), selection, frame: 12, ..Desk::default() };
+    let mut project = Project::new(document);
+    project.look_at(Some(12));
+    let desk = Desk { project, selection, ..Desk::default() };
     let size = vec2(320.0, 1400.0);
     Harness::builder().with_size(size).build_ui_state(|ui, desk: &mut Desk| desk.show(ui), desk)
 }
@@ -292,21 +292,21 @@ fn keys_come_and_go_at_the_frame() {
     let mut harness = on(json!({ "type": "medium", "g": 0.5 }));
     click(&mut harness, "n.g key");
     assert_eq!(param(&harness, "g"), json!({ "keys": [[12, 0.5]] }));
-    harness.state_mut().frame = 20;
+    harness.state_mut().project.look_at(Some(20));
     harness.run();
     // A change is a key where there are keys.
     type_into(&mut harness, "n.g", "0.7");
     assert_eq!(param(&harness, "g"), json!({ "keys": [[12, 0.5], [20, 0.7]] }));
-    harness.state_mut().frame = 16;
+    harness.state_mut().project.look_at(Some(16));
     harness.run();
     assert_eq!(node(&harness, "n.g").value().as_deref(), Some("0.6"));
     type_into(&mut harness, "n.g", "1");
     assert!(says(&harness, "is outside"));
-    harness.state_mut().frame = 12;
+    harness.state_mut().project.look_at(Some(12));
     harness.run();
     click(&mut harness, "n.g key");
     assert_eq!(param(&harness, "g"), json!({ "keys": [[20, 0.7]] }));
-    harness.state_mut().frame = 20;
+    harness.state_mut().project.look_at(Some(20));
     harness.run();
     click(&mut harness, "n.g key");
     assert_eq!(param(&harness, "g"), json!(0.7));
@@ -444,6 +444,24 @@ fn files_are_picked_in_a_dialog() {
     // The dialog reads its folder on a thread and asks for frames meanwhile.
     harness.run_steps(4);
     assert!(says(&harness, "Choose n.path"));
+    harness.key_press(Key::Escape);
+    harness.run_steps(4);
+    assert!(!says(&harness, "Choose n.path"));
+}
+
+#[test]
+fn a_graph_is_described_where_no_node_is_selected() {
+    let mut harness = inspector(json!({ "sun": { "type": "sun" } }), json!([]), &[]);
+    node(&harness, "about the graph").focus();
+    harness.run_steps(2);
+    for letters in ["low", " sun"] {
+        harness.event(egui::Event::Text(letters.to_owned()));
+        harness.run_steps(2);
+    }
+    assert_eq!(harness.state().project.document().about, "low sun");
+    // All that was written is one step.
+    harness.state_mut().undo();
+    assert_eq!(harness.state().project.document().about, "");
 }
 
 /// For looking: `cargo test inspector::tests::pictures -- --ignored` writes PNG files to `out/`.

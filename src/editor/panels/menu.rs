@@ -13,6 +13,9 @@ pub fn show(ui: &mut Ui, possible: Possible, title: &str) -> Vec<Action> {
             ui.menu_button(menu, |ui| {
                 ui.set_min_width(210.0);
                 for spec in ACTIONS.iter().filter(|spec| spec.menu == menu) {
+                    if spec.is_apart {
+                        ui.separator();
+                    }
                     let button = Button::new(spec.label).shortcut_text(key_text(ui.ctx(), spec));
                     if ui.add_enabled(possible.is(spec.action), button).clicked() {
                         asked.push(spec.action);

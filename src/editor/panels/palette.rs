@@ -29,16 +29,22 @@ impl Palette {
         self.open = if self.open.is_some() { None } else { Some(Default::default()) };
     }
 
+    /// Whether it has the keyboard.
+    pub fn is_open(&self) -> bool {
+        self.open.is_some()
+    }
+
     /// Draws it and gives what was chosen.
     pub fn show(&mut self, ui: &Ui, possible: Possible, presets: &[Preset]) -> Option<Choice> {
         let (query, mark) = self.open.as_mut()?;
         let context = ui.ctx().clone();
         let lines = lines(query, possible, presets);
         let step = |key| context.input_mut(|input| input.consume_key(egui::Modifiers::NONE, key));
-        if step(Key::ArrowDown) {
+        let (down, up) = (step(Key::ArrowDown), step(Key::ArrowUp));
+        if down {
             *mark += 1;
         }
-        if step(Key::ArrowUp) {
+        if up {
             *mark = mark.saturating_sub(1);
         }
         *mark = (*mark).min(lines.len().saturating_sub(1));
@@ -64,7 +70,11 @@ impl Palette {
                         let button = egui::Button::selectable(idx == *mark, &line.label)
                             .shortcut_text(line.hint(&context))
                             .min_size(vec2(ui.available_width(), 22.0));
-                        if ui.add(button).clicked() {
+                        let response = ui.add(button);
+                        if idx == *mark && (down || up) {
+                            response.scroll_to_me(None);
+                        }
+                        if response.clicked() {
                             chosen = Some(line.choice.clone());
                         }
                     }

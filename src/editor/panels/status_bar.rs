@@ -1,8 +1,6 @@
 //! The line at the bottom: what runs, what it costs, on which device, and what is wrong with it.
 
-use egui::{Align, Layout, RichText, Sense, Shape, Stroke, Ui, Vec2, vec2};
-
-use crate::editor::theme;
+use egui::{Align, Layout, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 /// What the bar shows.
 #[derive(Debug, Clone, Default)]
@@ -33,7 +31,7 @@ pub fn show(ui: &mut Ui, figures: &Figures) -> bool {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 10.0;
         if let Some((message, by_itself)) = &figures.trouble {
-            ui.label(RichText::new(message).color(theme::BAD));
+            ui.colored_label(ui.visuals().error_fg_color, message);
             if *by_itself {
                 ui.weak("starting again …");
             } else {
@@ -49,7 +47,7 @@ pub fn show(ui: &mut Ui, figures: &Figures) -> bool {
             } else {
                 format!("{} nodes failed", figures.n_failed)
             };
-            ui.label(RichText::new(nodes).color(theme::BAD));
+            ui.colored_label(ui.visuals().error_fg_color, nodes);
         } else {
             ui.weak("Ready");
         }

@@ -92,6 +92,17 @@ impl Autosave {
         failed
     }
 
+    /// Writes down a graph whose window cannot go on, where it is not saved; says what has become of it.
+    pub fn write_down(project: &Project, state: Option<PathBuf>) -> &'static str {
+        let Some(state) = state.filter(|_| project.is_unsaved()) else { return "" };
+        let mut autosave = Self::new(&state);
+        let failed = autosave.tick(project, Instant::now()).or_else(|| autosave.finish());
+        match failed {
+            None => "; what is not saved is offered at the next start",
+            Some(_) => "; what is not saved could not be written down",
+        }
+    }
+
     /// Waits until all is written; what went wrong.
     pub fn finish(&mut self) -> Option<String> {
         let result = self.running.take()?.join();

@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, DragValue, Id, Ui};
 
-use super::{Scene, Viewport, Wipe, hand};
+use super::{STORED, Scene, Viewport, Wipe, hand};
 use crate::editor::Project;
 use crate::editor::look;
 use crate::image::tonemap::Curve;
@@ -89,8 +89,12 @@ fn tone(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, look: &look
 
 /// From the right: place, histogram, wipe.
 fn places(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, scene: &Scene) {
-    if ui.button("Frame").on_hover_text("Look at the whole medium").clicked() {
-        viewport.frame(project, scene);
+    let can_frame = scene.camera.is_some() && scene.bounds.is_some();
+    let frames =
+        ui.add_enabled(can_frame, egui::Button::new("Frame")).on_hover_text("Look at the whole medium");
+    if frames.on_disabled_hover_text("There is no medium yet, or no camera").clicked() {
+        // It can, or the button were not enabled.
+        let _ = viewport.frame(project, scene);
     }
     if ui.button("1:1").on_hover_text("A pixel for a pixel").clicked() {
         viewport.one_to_one(ui.ctx());
@@ -112,7 +116,7 @@ fn places(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, scene: &S
 }
 
 fn wipe(viewport: &mut Viewport, ui: &mut Ui, scene: &Scene) {
-    for (slot, name) in ["A", "B"].into_iter().enumerate() {
+    for (slot, name) in STORED.into_iter().enumerate() {
         if ui.button(format!("Store picture {name}")).clicked() {
             viewport.store(slot, scene);
             ui.close();
@@ -120,7 +124,7 @@ fn wipe(viewport: &mut Viewport, ui: &mut Ui, scene: &Scene) {
     }
     ui.separator();
     ui.radio_value(&mut viewport.wipe, Wipe::Off, "No wipe");
-    for (slot, name) in ["A", "B"].into_iter().enumerate() {
+    for (slot, name) in STORED.into_iter().enumerate() {
         let is_there = viewport.stored[slot].is_some();
         ui.add_enabled_ui(is_there, |ui| {
             ui.radio_value(&mut viewport.wipe, Wipe::Stored(slot), format!("With stored {name}"));

@@ -76,6 +76,20 @@ pub(super) enum Wipe {
     Node(String),
 }
 
+impl Wipe {
+    /// What its other side shows.
+    fn name(&self) -> String {
+        match self {
+            Self::Off => String::new(),
+            Self::Stored(slot) => format!("stored {}", STORED[*slot]),
+            Self::Node(name) => name.clone(),
+        }
+    }
+}
+
+/// Names of the stored pictures.
+const STORED: [&str; 2] = ["A", "B"];
+
 /// What the viewport remembers between frames.
 pub struct Viewport {
     place: Place,
@@ -154,10 +168,14 @@ impl Viewport {
     }
 
     /// Looks at the whole medium.
-    pub fn frame(&self, project: &mut Project, scene: &Scene) {
-        if let (Some(camera), Some([min, max])) = (scene.camera, scene.bounds) {
-            hand::write(project, scene, None, "frame the medium", eye::frame(camera, min, max));
-        }
+    ///
+    /// # Errors
+    /// Says why it cannot, in a line.
+    pub fn frame(&self, project: &mut Project, scene: &Scene) -> Result<(), &'static str> {
+        let camera = scene.camera.ok_or("The picture is of no camera that could be moved")?;
+        let [min, max] = scene.bounds.ok_or("Nothing to frame: no medium has been computed yet")?;
+        hand::write(project, scene, None, "frame the medium", eye::frame(camera, min, max));
+        Ok(())
     }
 
     /// Draws the picture and takes gestures on it.
@@ -203,6 +221,9 @@ impl Viewport {
         self.paint(ui, area, rect, other.is_some());
         if other.is_some() {
             hand::divider(self, ui, area, rect);
+            let left = scene.look.map_or("", |look| look.source.node.as_str());
+            let x = rect.left() + self.divider * rect.width();
+            overlay::sides(ui, area, x, [left, &self.wipe.name()]);
         }
         let lens = scene.camera.and_then(|camera| Lens::new(camera, rect));
         if let (Some(flat), Some(lens)) = (scene.flat, &lens) {

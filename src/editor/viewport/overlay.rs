@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
+use egui::{
+    Align2, Color32, FontId, Painter, Pos2, Rect, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2,
+};
 use glam::DVec3;
 
 use super::Scene;
@@ -37,6 +39,30 @@ pub fn corner(area: Rect) -> Pos2 {
     lower_left(area) + vec2(34.0, -34.0)
 }
 
+/// Lines that are seen on any picture: light ones have a dark rim.
+fn lines(painter: &Painter, lines: &[[Pos2; 2]], width: f32, ink: Color32) {
+    let rim = rim_of(ink).map(|rim| Stroke::new(width + 2.5, rim));
+    for stroke in rim.into_iter().chain([Stroke::new(width, ink)]) {
+        for line in lines {
+            painter.line_segment(*line, stroke);
+        }
+    }
+}
+
+/// Letters with a shadow of that color: all around it would fill them.
+fn letters(painter: &Painter, at: Pos2, anchor: Align2, text: &str, ink: Color32) {
+    let font = FontId::proportional(11.0);
+    if let Some(rim) = rim_of(ink) {
+        painter.text(at + vec2(1.0, 1.0), anchor, text, font.clone(), rim);
+    }
+    painter.text(at, anchor, text, font, ink);
+}
+
+/// Dark ink stands on a light ground that the window chose itself.
+fn rim_of(ink: Color32) -> Option<Color32> {
+    (ink.intensity() > 0.4).then_some(Color32::from_black_alpha(120))
+}
+
 /// A round length, at most some 110 points long.
 pub fn scale_bar(ui: &Ui, area: Rect, at: Pos2, points_per_m: f64, ink: Color32) {
     let length_m = round_length(110.0 / points_per_m);
@@ -45,14 +71,10 @@ pub fn scale_bar(ui: &Ui, area: Rect, at: Pos2, points_per_m: f64, ink: Color32)
         return;
     }
     let painter = ui.painter().with_clip_rect(area);
-    let line = Stroke::new(1.5, ink);
-    painter.line_segment([at, at + vec2(length, 0.0)], line);
-    for x in [0.0, length] {
-        painter.line_segment([at + vec2(x, -4.0), at + vec2(x, 4.0)], line);
-    }
+    let ends = [0.0, length].map(|x| [at + vec2(x, -4.0), at + vec2(x, 4.0)]);
+    lines(&painter, &[[at, at + vec2(length, 0.0)], ends[0], ends[1]], 1.5, ink);
     let text = length_text(length_m);
-    let font = FontId::proportional(11.0);
-    painter.text(at + vec2(0.5 * length, -5.0), Align2::CENTER_BOTTOM, &text, font, ink);
+    letters(&painter, at + vec2(0.5 * length, -5.0), Align2::CENTER_BOTTOM, &text, ink);
     let rect = Rect::from_min_max(at + vec2(0.0, -18.0), at + vec2(length, 4.0));
     say(ui, "scale bar", rect, &format!("Scale bar: {text}"));
 }
@@ -98,6 +120,14 @@ pub fn problem(ui: &mut Ui, area: Rect, name: &str, message: &str) {
         });
 }
 
+/// What stands on each side of the wipe's divider, which is at `x`.
+pub fn sides(ui: &Ui, area: Rect, x: f32, [left, right]: [&str; 2]) {
+    // Above the line of the readout.
+    let y = area.bottom() - 42.0;
+    pill(ui, "wipe left", pos2(x - 8.0, y), Align2::RIGHT_BOTTOM, left);
+    pill(ui, "wipe right", pos2(x + 8.0, y), Align2::LEFT_BOTTOM, right);
+}
+
 /// The picture is a preview.
 pub fn refining(ui: &Ui, area: Rect) {
     pill(ui, "refining", area.right_top() + vec2(-10.0, 10.0), Align2::RIGHT_TOP, "refining …");
@@ -127,8 +157,8 @@ pub fn guides(ui: &Ui, area: Rect, rect: Rect, camera: Option<Camera>) {
     for (axis, name, (r, g, b)) in axes {
         let way = vec2(axis.dot(right_unit) as f32, -axis.dot(up_unit) as f32) * 20.0;
         let color = Color32::from_rgb(r, g, b);
-        painter.line_segment([corner, corner + way], Stroke::new(2.0, color));
-        painter.text(corner + way * 1.35, Align2::CENTER_CENTER, name, FontId::proportional(11.0), color);
+        lines(&painter, &[[corner, corner + way]], 2.0, color);
+        letters(&painter, corner + way * 1.35, Align2::CENTER_CENTER, name, color);
     }
     let height_m = 2.0 * up.length() * camera.position.distance(camera.look_at);
     let points_per_m = f64::from(rect.height()) / height_m;

@@ -128,6 +128,27 @@ fn a_device_that_is_lost_is_told_and_opened_again() {
 }
 
 #[test]
+fn a_device_that_is_full_is_told_and_opened_again() {
+    let Some(mut bench) = bench() else { return };
+    let (result, _) = answered(&mut bench, ask(graph(), false));
+    assert!(result.is_ok());
+    bench.session.as_ref().unwrap().gpu().fill();
+    let mut denser = graph();
+    denser.set(catalog(), "medium.density_scale", "3").unwrap();
+    let (result, replies) = answered(&mut bench, ask(denser.clone(), false));
+    let message = result.unwrap_err();
+    // Who had no room, and what to do.
+    assert!(message.starts_with("medium: the GPU is out of memory"), "{message}");
+    assert!(message.contains("lower medium.max_resolution"), "{message}");
+    assert!(pictures(&replies).is_empty() && n_opened(&replies) == 0);
+    // What the thread does then: the old device goes with all that it held.
+    bench.session = None;
+    let (result, replies) = answered(&mut bench, ask(denser, false));
+    assert!(result.is_ok() && n_opened(&replies) == 1);
+    assert_eq!(pictures(&replies).last(), Some(&(Level::FULL, 128)));
+}
+
+#[test]
 fn a_restart_opens_the_device_anew_even_where_a_newer_request_comes_first() {
     let mut worker = Worker::start(&AdapterChoice::Auto, || {});
     let number = worker.ask(ask(graph(), false));

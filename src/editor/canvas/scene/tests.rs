@@ -8,7 +8,7 @@ const TEXT: &str = r#"{"tyndall": 1, "nodes": {"sun": {"type": "sun"}, "split": 
     "layout": {"sun": [0, 0], "split": [300, 50]}, "bends": {"sun.light -> split.lights": [[250, -40]]}}"#;
 
 fn scene() -> Scene {
-    Scene::new(&Document::parse(TEXT, Path::new("")).unwrap(), catalog(), &HashSet::new())
+    Scene::new(&Document::parse(TEXT, Path::new("")).unwrap(), catalog())
 }
 
 #[test]
@@ -51,4 +51,28 @@ fn distances_to_a_line() {
     let line = [pos2(0.0, 0.0), pos2(10.0, 0.0), pos2(10.0, 10.0)];
     let far = |x, y| distance(&line, pos2(x, y));
     assert_eq!((far(5.0, 3.0), far(-3.0, 4.0), far(12.0, 5.0)), (3.0, 5.0, 2.0));
+}
+
+/// Presets and the graph of a dropped volume are laid out by hand, with room for the pictures that come.
+#[test]
+fn no_node_of_a_preset_lies_on_another() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs");
+    let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let mut documents: Vec<(String, Document)> = files
+        .filter(|path| path.extension().is_some_and(|ending| ending == "json"))
+        .map(|path| (path.display().to_string(), Document::load(&path).unwrap()))
+        .collect();
+    assert!(documents.len() > 5);
+    let steam = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/steam.vdb");
+    let lit = crate::template::new_graph(&crate::template::measure(&steam, true).unwrap());
+    documents.push(("a dropped volume".to_owned(), lit));
+    for (from, document) in documents {
+        let scene = Scene::new(&document, catalog());
+        for (idx, node) in scene.nodes.iter().enumerate() {
+            for other in &scene.nodes[..idx] {
+                let lies_on = node.rect.expand(3.0).intersects(other.rect.expand(3.0));
+                assert!(!lies_on, "{from}: {} lies on {}", node.name, other.name);
+            }
+        }
+    }
 }

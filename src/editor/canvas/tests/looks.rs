@@ -57,15 +57,12 @@ fn what_is_off_the_screen_is_no_widget() {
 }
 
 #[test]
-fn snapshot_of_the_canvas() {
+fn the_canvas_looks_as_it_did() {
     for (theme, name) in [(egui::Theme::Dark, "canvas_dark"), (egui::Theme::Light, "canvas_light")] {
         let mut bench = Bench::new(Document::parse(SCENE, Path::new("")).unwrap());
         bench.statuses = statuses();
         bench.selection.only("split");
-        let builder = Harness::builder().with_size(Vec2::new(480.0, 300.0)).with_theme(theme);
-        let mut harness = builder.build_ui_state(|ui, bench: &mut Bench| bench.show(ui), bench);
-        harness.run_steps(3);
-        assert_looks(&mut harness, name);
+        assert_looks(name, Vec2::new(480.0, 300.0), theme, bench, |ui, bench| bench.show(ui));
     }
 }
 

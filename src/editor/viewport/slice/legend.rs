@@ -13,7 +13,9 @@ const N_STEPS: usize = 128;
 /// Draws the bar at the right edge of `area`; `at` is the value under the cursor.
 pub fn show(ui: &mut Ui, area: Rect, map: &str, [name, unit]: [&str; 2], range: [f64; 2], at: Option<f32>) {
     let Some(map) = Colormap::named(map) else { return };
-    let height = (area.height() - 110.0).clamp(60.0, 220.0);
+    // Above it the picture says that it is refined, below it stand two lines of values.
+    let free = Rect::from_min_max(area.min + vec2(0.0, 40.0), area.max - vec2(0.0, 76.0));
+    let height = (free.height() - 46.0).clamp(60.0, 220.0);
     let title = if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
     let font = FontId::proportional(11.0);
     let painter = ui.painter().with_clip_rect(area);
@@ -21,7 +23,7 @@ pub fn show(ui: &mut Ui, area: Rect, map: &str, [name, unit]: [&str; 2], range: 
     let ends = range.map(|value| short(value as f32));
     let width = title.size().x.max(74.0) + 20.0;
     let size = vec2(width, height + 46.0);
-    let shade = Rect::from_center_size(pos2(area.right() - 10.0 - 0.5 * width, area.center().y), size);
+    let shade = Rect::from_center_size(pos2(area.right() - 10.0 - 0.5 * width, free.center().y), size);
     let response = ui.interact(shade, ui.id().with("legend"), Sense::hover());
     let spoken = format!("Legend: {name} from {} to {} {unit}", ends[0], ends[1]);
     response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, spoken.trim_end()));

@@ -146,6 +146,13 @@ fn the_medium_is_framed() {
     let half = (0.5 * framed.fov_y_deg).to_radians();
     assert!((3f64.sqrt() / distance(framed) - half.sin()).abs() < 1e-5);
     assert_eq!(harness.state_mut().project.undo().as_deref(), Some("frame the medium"));
+    // Without a medium there is nothing to be framed, and nothing is.
+    harness.state_mut().bounds = None;
+    harness.run_steps(2);
+    let before = harness.state().camera();
+    click(&mut harness, "Frame");
+    assert_eq!(harness.state().camera(), before);
+    assert!(!harness.state().project.can_undo());
 }
 
 #[test]
@@ -156,6 +163,8 @@ fn the_divider_moves_between_two_pictures() {
     click(&mut harness, "Wipe");
     click(&mut harness, "Store picture A");
     assert_eq!(harness.state().viewport.wipe, Wipe::Stored(0));
+    // Each side says what it is.
+    assert!(has(&harness, "march") && has(&harness, "stored A"));
     let from = at(&harness, "Wipe divider");
     plain_drag(&mut harness, from, vec2(-120.0, 15.0));
     let width = 96.0 / 64.0 * harness.get_by_label("Picture").rect().height();
@@ -168,7 +177,7 @@ fn the_divider_moves_between_two_pictures() {
     click(&mut harness, "Wipe");
     click(&mut harness, "With other");
     assert_eq!(harness.state().viewport.wipe, Wipe::Node("other".to_owned()));
-    assert!(harness.query_by_label("Wipe divider").is_some());
+    assert!(harness.query_by_label("Wipe divider").is_some() && has(&harness, "other"));
     // Beside the divider a drag still orbits.
     let beside = at(&harness, "Picture") + vec2(150.0, 0.0);
     plain_drag(&mut harness, beside, vec2(40.0, 0.0));

@@ -20,6 +20,7 @@ pub struct Bench {
     pub viewport: Viewport,
     pub project: Project,
     pub pictures: HashMap<String, Picture>,
+    pub bounds: Option<[DVec3; 2]>,
 }
 
 impl Bench {
@@ -34,7 +35,8 @@ impl Bench {
         let project = Project::new(Document::parse(text, Path::new("")).unwrap());
         let pictures = [("march", [0.25, 0.5, 0.0]), ("other", [0.0, 0.125, 0.5])];
         let pictures = pictures.map(|(name, rgb)| (name.to_owned(), picture(rgb)));
-        Self { viewport: Viewport::default(), project, pictures: HashMap::from(pictures) }
+        let bounds = Some([DVec3::splat(-1.0), DVec3::splat(1.0)]);
+        Self { viewport: Viewport::default(), project, pictures: HashMap::from(pictures), bounds }
     }
 
     pub fn show(&mut self, ui: &mut Ui) {
@@ -44,7 +46,7 @@ impl Bench {
             look: look.as_ref(),
             pictures: &self.pictures,
             camera: look::camera(&flat, "camera"),
-            bounds: Some([DVec3::splat(-1.0), DVec3::splat(1.0)]),
+            bounds: self.bounds,
             problem: None,
             is_busy: false,
             flat: self.viewport.slice.is_on().then_some(&flat),

@@ -1,11 +1,10 @@
 //! What is told of the picture: tone, layers, values, histogram, scale; and what it all looks like.
 
 use egui::Theme;
-use egui_kittest::{SnapshotOptions, wgpu as drawing};
 use serde_json::json;
 
 use super::*;
-use crate::gpu::testing::{gpu, window_backends};
+use crate::editor::snapshot::assert_looks;
 
 #[test]
 fn exposure_and_curve_need_no_new_picture() {
@@ -72,33 +71,12 @@ fn histogram_and_scale_are_told() {
 }
 
 /// What the viewport looks like, with all that can be drawn over a picture, in both themes.
-///
-/// Drivers differ in the last bit of a blend and in which pixels an edge covers: egui feathers edges over a pixel, so
-/// that such a pixel differs by a part of its contrast. The threshold of 0.6 (YIQ distance, egui_kittest's own for a
-/// single driver) with 300 of 288 000 pixels beyond it allows for a pixel along each of the lines and letters that
-/// are drawn. A legend that is missing changes 20 838, a picture that is moved by a pixel 8829.
 #[test]
 fn it_looks_as_it_did() {
-    if gpu().is_none() {
-        return;
-    }
-    let mut results = egui_kittest::SnapshotResults::new();
     for (theme, name) in [(Theme::Dark, "viewport_dark"), (Theme::Light, "viewport_light")] {
-        let mut setup = drawing::default_wgpu_setup();
-        if let eframe::egui_wgpu::WgpuSetup::CreateNew(new) = &mut setup {
-            new.instance_descriptor.backends = window_backends();
-        }
-        let renderer = drawing::WgpuTestRenderer::from_setup(setup);
-        let builder = Harness::builder().with_size(vec2(720.0, 400.0)).renderer(renderer).with_theme(theme);
         let mut bench = Bench::new();
         bench.viewport.toggle_histogram();
         bench.viewport.slice = slice::with_cut();
-        let mut harness = builder.build_ui_state(|ui, bench: &mut Bench| bench.show(ui), bench);
-        crate::editor::theme::apply(&harness.ctx, theme.into());
-        harness.run_steps(4);
-        let options =
-            SnapshotOptions::new().threshold(0.6).max_failed_pixels(300_usize).output_path("tests/snapshots");
-        harness.snapshot_options(name, &options);
-        results.extend_harness(&mut harness);
+        assert_looks(name, vec2(720.0, 400.0), theme, bench, |ui, bench| bench.show(ui));
     }
 }
