@@ -12,6 +12,7 @@
 //! first peak has fallen to e^−10 at the last degree: s = 0 for g up to 0.961 on the largest grid, 0.9° for
 //! 0.99 and at most 1°. What rings is then under 3e-4/sr. Kernels are negative by
 //! themselves, by up to 0.004/sr, inside the outer angle: there so much is taken off the ordinates.
+//! `turns` are three angles of B_{x/2}, for the eye that asks which way light comes when it is half way.
 //! Tested by values of the kernel itself, and by folding.
 
 use std::f64::consts::PI;
@@ -19,7 +20,7 @@ use std::f64::consts::PI;
 use rayon::prelude::*;
 
 use crate::light::Window;
-use crate::light::environment::STACK_X;
+use crate::light::environment::{STACK_TURNS, STACK_X};
 use crate::optics::phase::hg;
 
 /// Levels of the stack.
@@ -98,14 +99,57 @@ fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// The angles [rad] at the middles of even parts of what half of the scatterings of each level do, w B_{x/2} where
+/// it is positive.
+pub(super) fn turns(g: f64, window: Window) -> [[f32; STACK_TURNS]; N_LEVELS] {
+    let [cos_inner, cos_outer] = window.cosines();
+    // Nothing is scattered at x = 0: the limit, once.
+    let halves = STACK_X.map(|x| 0.5 * x.max(1e-3));
+    // Finer towards the peak.
+    let angle = |idx: usize| PI * (idx as f64 / N_SAMPLES as f64).powi(2);
+    let parts: Vec<[f64; N_LEVELS]> = (0..N_SAMPLES)
+        .into_par_iter()
+        .map(|idx| {
+            let (low, high) = (angle(idx), angle(idx + 1));
+            let mu = (0.5 * (low + high)).cos();
+            let kept = smoothstep((mu - cos_outer) / (cos_inner - cos_outer));
+            let area = low.cos() - high.cos();
+            if kept > 0.0 {
+                folded(mu, g, &halves).map(|b| (kept * area * b).max(0.0))
+            } else {
+                [0.0; N_LEVELS]
+            }
+        })
+        .collect();
+    std::array::from_fn(|level| {
+        let total: f64 = parts.iter().map(|part| part[level]).sum();
+        std::array::from_fn(|turn| {
+            let mut rest = (turn as f64 + 0.5) / STACK_TURNS as f64 * total;
+            let idx = parts.iter().position(|part| {
+                rest -= part[level];
+                rest <= 0.0
+            });
+            // A window that lets nothing through turns nothing.
+            idx.map_or(0.0, |idx| {
+                angle(idx + 1) + rest / parts[idx][level].max(1e-300) * (angle(idx + 1) - angle(idx))
+            }) as f32
+        })
+    })
+}
+
 /// e^−x Σ_j x^j/j! peak_j for each level.
 fn peaks(mu: f64, g: f64) -> [f64; N_LEVELS] {
-    let mut weights = STACK_X.map(|x| (-x).exp());
+    folded(mu, g, &STACK_X)
+}
+
+/// The same for each of these x.
+fn folded(mu: f64, g: f64, xs: &[f64; N_LEVELS]) -> [f64; N_LEVELS] {
+    let mut weights = xs.map(|x| (-x).exp());
     let mut sums = [0.0; N_LEVELS];
     for j in 1..=N_FOLDS {
         let peak = peak(j, mu, g);
         for level in 0..N_LEVELS {
-            weights[level] *= STACK_X[level] / j as f64;
+            weights[level] *= xs[level] / j as f64;
             sums[level] += weights[level] * peak;
         }
     }
@@ -163,6 +207,38 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn turns_are_the_angles_of_even_parts() {
+        // Hardly windowed and x small, the kernel is HG where HG is above its first moments: its share beyond
+        // an angle is known, with F(mu) = (1-g²)/2g (1/(1-g) - 1/√(1+g²-2g mu)) of HG and (1-mu)/2 + 3g (1-mu²)/4
+        // of the moments taken off, and (1-mu)/2 + 3(1-mu²)/4 times g² put back.
+        let (g, wide) = (0.8_f64, Window { inner_deg: 178.0, outer_deg: 179.0 });
+        let f = g * g;
+        let below = |mu: f64| {
+            let hg = (1.0 - f) / (2.0 * g) * (1.0 / (1.0 - g) - 1.0 / (1.0 + f - 2.0 * g * mu).sqrt());
+            let (even, tilted) = (0.5 * (1.0 - mu), 0.75 * (1.0 - mu * mu));
+            hg - (even + g * tilted) + f * (even + tilted)
+        };
+        // Where the kernel turns negative.
+        let samples = (0..200_000).map(|n| 1.0 - n as f64 * 1e-5);
+        let total = samples.map(below).fold(0.0, f64::max);
+        let found = turns(g, wide);
+        for (turn, share) in found[0].into_iter().zip([1.0 / 6.0, 0.5, 5.0 / 6.0]) {
+            let found = below(f64::from(turn).cos()) / total;
+            // Midpoints of steps of some 3e-4 of the angle, and 5e-4 of twice scattered.
+            assert!((found - share).abs() < 1e-3, "{found} against {share}");
+        }
+        // More scatterings turn light further; the window ends it.
+        for g in [0.3, 0.9, 0.999] {
+            let found = turns(g, WINDOW);
+            assert!(
+                found.iter().all(|turns| turns.is_sorted() && turns[2].to_degrees() <= 70.1),
+                "{found:?}"
+            );
+            assert!(found.windows(2).all(|pair| pair[1][1] >= pair[0][1] - 1e-3), "{found:?}");
         }
     }
 

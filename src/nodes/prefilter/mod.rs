@@ -3,8 +3,11 @@
 //! Light that is scattered forward by a few degrees comes nearly straight along the view ray: what shows is
 //! the environment itself, blurred by each scattering once more, and no number of ordinates would draw it.
 //! The stack holds it for 16 numbers x of scatterings, e^−x Σ_{j≥1} x^j/j! [Env ⊗ w peak_j], Env without its
-//! ambient (`kernel.rs`, `harmonics.rs`); the ordinates lose that share by their window. Units as the map's,
-//! [W/(m² sr)]; texels may be negative near the window's outer angle from a sun.
+//! ambient and its suns (`kernel.rs`, `harmonics.rs`); the ordinates of its regions lose that share by their
+//! window. Units as the map's, [W/(m² sr)]; texels may be negative near the window's outer angle from a bright spot.
+//! The march bends its light (`raymarch`, `environment.wgsl`): so it may take over wider angles than straight light
+//! may, 60 to 120 degrees for 30 to 70. Limit: matter that turns light little, g of 0.75 at an optical depth of 4 in
+//! a studio of lamps, is drawn better by ordinates alone (error 4.5 %, with the stack 6 to 8 %, straight 10 %).
 //!
 //! The stack has n rows and 2n columns, n the power of two over 10/(1−g), in 64 … 256. Between texels
 //! bilinear interpolation takes up to 5 % off the very peak of light from a single texel, 12 % for g over
@@ -28,7 +31,7 @@ pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, 
 
 static SPEC: NodeSpec = NodeSpec {
     id: "prefilter",
-    version: 1,
+    version: 2,
     category: Category::Transport,
     purpose: "Makes an environment ready to be seen through a medium that scatters forward.",
     doc: "Every ordinate becomes as wide as its region. What of the environment shines through the medium, blurred, then comes \
@@ -42,7 +45,7 @@ static SPEC: NodeSpec = NodeSpec {
         PortSpec::new("ordinates", PortType::Ordinates, "the beams, for principal_propagation"),
         PortSpec::new("environment", PortType::Environment, "for raymarch.environment"),
     ],
-    params: &[ParamSpec::vector("window_deg", &[30.0, 70.0]).unit("deg").between(0.0, 180.0).soft(5.0, 90.0).doc(
+    params: &[ParamSpec::vector("window_deg", &[60.0, 120.0]).unit("deg").between(0.0, 180.0).soft(5.0, 90.0).doc(
         "Light scattered by less than the first angle is the environment's, by more than the second the ordinates'.",
     )],
 };
@@ -94,13 +97,20 @@ const MAX_DEGREES: usize = 256;
 
 fn stack(map: &Map, minimum: [f64; 3], g: f64, window: Window) -> Stack {
     let n = (kernel::degrees_needed(g).min(MAX_DEGREES as f64) as usize).next_power_of_two().max(MIN_DEGREES);
+    // They are ordinates that keep all of their light.
+    let mut suns = map.suns().concat();
+    suns.sort_unstable();
     let excess = |row: usize, column: usize| {
-        let texel = map.texels[row * map.width + column];
+        let idx = row * map.width + column;
+        if suns.binary_search(&idx).is_ok() {
+            return [0.0; 3];
+        }
+        let texel = map.texels[idx];
         std::array::from_fn(|c| f64::from(texel[c]) * map.scale - minimum[c])
     };
     let picture = harmonics::Picture { width: map.width, height: map.height, texels: &excess };
     let texels = harmonics::convolve(&picture, &kernel::factors(g, window, n));
-    Stack { width: 2 * n, height: n, texels }
+    Stack { width: 2 * n, height: n, texels, turns: kernel::turns(g, window) }
 }
 
 #[cfg(test)]

@@ -150,3 +150,19 @@ fn regions_get_their_spread_and_window() {
         assert!(inverted.to_string().contains("the smaller one"), "{inverted}");
     }
 }
+
+#[test]
+fn a_sun_is_not_in_the_stack() {
+    let lit = |radiance: f32| {
+        let mut texels = vec![[1.0; 3]; 64 * 32];
+        texels[9 * 64 + 20] = [radiance; 3];
+        Map { width: 64, height: 32, texels: Arc::new(texels), scale: 1.0, rotate_y: 0.0, stack: None }
+    };
+    let bright = |radiance: f32| {
+        let stack = stack_of(&lit(radiance), 0.85);
+        stack.texels.iter().map(|texel| f64::from(texel[0].abs())).fold(0.0, f64::max)
+    };
+    // All else is ambient.
+    assert_eq!(bright(1e5), 0.0);
+    assert!(bright(50.0) > 0.1);
+}

@@ -13,7 +13,7 @@
 //! In: index space as in `oracle_scene.rs`; sigma_t trilinear, zero outside; tau of the light
 //! trilinear between corners; the residual trilinear between centers; emission at the grids' own
 //! voxels. Out: radiance by layers [W/(m² sr)].
-//! Limits: one table of K for all spreads a0; no environment stack; near a point light r⁻²
+//! Limits: one table of K for all spreads a0; of an environment's stack only the bent ways (`bend.rs`); near a point light r⁻²
 //! is that of the pair. Tested with closed forms; as a chain in `oracle_scene/tests.rs`.
 
 use std::f64::consts::PI;
@@ -73,6 +73,8 @@ pub struct Marched {
     pub background: f64,
     /// Unscaled optical depth of the ray.
     pub tau: f64,
+    /// ∫ (1 − tau/T)² t dtau over ∫ (1 − tau/T)² dtau [cells]: where an environment's light bends.
+    pub elbow: f64,
 }
 
 impl Marched {
@@ -106,6 +108,7 @@ pub fn march_through(
 ) -> Marched {
     let mut seen = Marched::default();
     let scaled = scene.medium.scaled();
+    let mut depths = Vec::new();
     if let Some([start, end]) = interval {
         let n_pairs = (0.5 * (end - start) / scene.step).ceil();
         let step = 0.5 * (end - start) / n_pairs;
@@ -130,6 +133,7 @@ pub fn march_through(
                     *sum += reach(scene.least_k) * value;
                 }
                 seen.tau += depth;
+                depths.push([depth, seen.tau - 0.5 * depth, t]);
             }
             if toward[0] > 0.0 {
                 segment.tau_c = toward[2] / toward[0];
@@ -138,6 +142,10 @@ pub fn march_through(
             }
         }
     }
+    let weights = || depths.iter().map(|[depth, tau, t]| (depth * (1.0 - tau / seen.tau).powi(2), t));
+    let elbow = weights().map(|(weight, t)| weight * t).sum::<f64>()
+        / weights().map(|(weight, _)| weight).sum::<f64>();
+    seen.elbow = if seen.tau > 0.0 { elbow } else { 0.0 };
     seen.background = scene.ambient * (-scaled.k * seen.tau).exp();
     seen
 }
@@ -231,5 +239,6 @@ pub fn box_interval(ray: &Ray, low: DVec3, high: DVec3) -> Option<[f64; 2]> {
     (end > start).then_some([start, end])
 }
 
+pub mod bend;
 #[cfg(test)]
 mod tests;
