@@ -39,6 +39,8 @@ pub enum Action {
     FrameMedium,
     /// The histogram of the picture.
     Histogram,
+    /// A plane through a field.
+    Slice,
     /// Keeps the picture to compare with.
     StoreA,
     /// Keeps another one.
@@ -49,6 +51,8 @@ pub enum Action {
     NextFrame,
     /// The frame before this one.
     PreviousFrame,
+    /// Brings the keyboard to the canvas, or from there to the inspector.
+    OtherPart,
     /// Larger text and controls.
     Larger,
     /// Smaller text and controls.
@@ -149,11 +153,13 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)),
     spec(Action::ActualSize, "View", "Picture at 1:1", key(COMMAND, Key::Num1)),
     spec(Action::FrameMedium, "View", "Frame the medium", key(COMMAND, Key::Num2)),
+    spec(Action::Slice, "View", "Slice plane", key(COMMAND, Key::Num3)),
     spec(Action::Histogram, "View", "Histogram", key(COMMAND, Key::H)),
     spec(Action::StoreA, "View", "Store picture A", key(COMMAND, Key::F1)),
     spec(Action::Play, "View", "Play or stop", key(COMMAND, Key::Space)),
     spec(Action::NextFrame, "View", "Next frame", key(COMMAND, Key::ArrowRight)),
     spec(Action::PreviousFrame, "View", "Previous frame", key(COMMAND, Key::ArrowLeft)),
+    spec(Action::OtherPart, "View", "To canvas or inspector", key(NONE, Key::F6)),
     spec(Action::Larger, "View", "Larger interface", key(COMMAND, Key::Equals)),
     spec(Action::Smaller, "View", "Smaller interface", key(COMMAND, Key::Minus)),
     spec(Action::NormalSize, "View", "Normal interface", None),

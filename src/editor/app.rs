@@ -7,7 +7,7 @@ mod solving;
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
-use egui::{CentralPanel, Frame, Panel, TextureHandle, Ui};
+use egui::{CentralPanel, Frame, Panel, Sense, TextureHandle, Ui, UiBuilder};
 
 use super::action::{self, Action};
 use super::canvas::{Canvas, Request};
@@ -22,9 +22,8 @@ use super::presets::{self, Preset};
 use super::settings::{Settings, ThemeChoice};
 use super::viewport::{Picture, Scene, Viewport};
 use super::{Project, Selection, Statuses, Worker, inspector, theme};
-use crate::camera::Camera;
 use crate::gpu::AdapterChoice;
-use crate::graph::{Document, flatten};
+use crate::graph::flatten;
 use crate::nodes::catalog;
 use crate::template;
 use crate::volume::Lattice;
@@ -61,7 +60,24 @@ pub struct App {
     asked: Option<solving::Asked>,
     /// The revision that was last looked through for frames.
     spanned: Option<u64>,
+    pictures_seen: PicturesSeen,
+    /// The device is to be opened anew.
+    restarts: bool,
+    /// The inspector is to have the keyboard.
+    inspects: bool,
 }
+
+/// What a benchmark counts.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct PicturesSeen {
+    /// Pictures of the node that is looked at, of whatever level.
+    pub count: u64,
+    /// The last one was computed whole.
+    pub is_whole: bool,
+}
+
+/// What the canvas has of the window's height, where the user did not choose.
+const CANVAS_SHARE: f32 = 0.4;
 
 impl App {
     /// On a graph, or on the start page. What is not saved is kept in `state`, the program's own folder.
@@ -100,12 +116,20 @@ impl App {
             lattice: None,
             asked: None,
             spanned: None,
+            pictures_seen: PicturesSeen::default(),
+            restarts: false,
+            inspects: false,
         };
         if let Some(file) = app.project.file().map(Path::to_owned) {
             app.settings.opened(&file);
         }
         app.keep_safe();
         app
+    }
+
+    /// What has come of the node that is looked at.
+    pub fn pictures_seen(&self) -> PicturesSeen {
+        self.pictures_seen
     }
 
     /// Does what was asked for.
@@ -127,19 +151,22 @@ impl App {
             Action::FitPicture => self.viewport.fit(),
             Action::ActualSize => self.viewport.one_to_one(context),
             Action::Histogram => self.viewport.toggle_histogram(),
+            Action::Slice => self.viewport.slice.toggle(),
             Action::FrameMedium => self.with_scene(|viewport, project, scene| viewport.frame(project, scene)),
             Action::StoreA => self.with_scene(|viewport, _, scene| viewport.store(0, scene)),
             Action::StoreB => self.with_scene(|viewport, _, scene| viewport.store(1, scene)),
             Action::Play => self.player.toggle(now),
             Action::NextFrame => self.player.go_to(self.player.frame.saturating_add(1)),
             Action::PreviousFrame => self.player.go_to(self.player.frame.saturating_sub(1)),
+            Action::OtherPart if self.canvas.is_focused() => self.inspects = true,
+            Action::OtherPart => self.canvas.take_keyboard(&self.selection),
             Action::Larger => self.scale_to(context, self.settings.scale + 0.1),
             Action::Smaller => self.scale_to(context, self.settings.scale - 0.1),
             Action::NormalSize => self.scale_to(context, 1.0),
             Action::Dark => self.theme_to(context, ThemeChoice::Dark),
             Action::Light => self.theme_to(context, ThemeChoice::Light),
             Action::System => self.theme_to(context, ThemeChoice::System),
-            Action::Retry => self.asked = None,
+            Action::Retry => self.retry(),
             Action::Canvas(command) => self.canvas.ask(command),
         }
     }
@@ -170,13 +197,20 @@ impl App {
     }
 
     fn has_frames(&self) -> bool {
-        self.is_open && self.player.range[1] > self.player.range[0]
+        self.is_open && self.player.has_frames()
+    }
+
+    /// The frame that is looked at, where there are several.
+    fn asks_frame(&self) -> Option<i64> {
+        self.has_frames().then_some(self.player.frame)
     }
 
     /// Calls `body` with what the viewport shows.
     fn with_scene(&mut self, body: impl FnOnce(&mut Viewport, &mut Project, &Scene)) {
         let camera =
-            self.look.as_ref().and_then(|look| camera_of(self.project.document(), look.camera.as_ref()?));
+            self.look.as_ref().and_then(|look| look::camera(self.project.document(), look.camera.as_ref()?));
+        let slices = self.viewport.slice.is_on();
+        let flat = slices.then(|| flatten(self.project.document(), catalog()).into_owned());
         let scene = Scene {
             look: self.look.as_ref(),
             pictures: &self.pictures,
@@ -184,6 +218,7 @@ impl App {
             bounds: self.lattice.as_ref().map(solving::bounds),
             problem: self.problem(),
             is_busy: self.figures.running.is_some() || self.figures.adapter.is_none(),
+            flat: flat.as_ref(),
         };
         body(&mut self.viewport, &mut self.project, &scene);
     }
@@ -191,13 +226,15 @@ impl App {
     fn follow_frames(&mut self, ui: &Ui) {
         if self.spanned != Some(self.project.revision()) {
             self.spanned = Some(self.project.revision());
-            let (range, missing) = super::player::span(self.project.document()).unwrap_or_default();
-            self.player.set_span(range, missing);
+            let flat = flatten(self.project.document(), catalog());
+            self.player.set_span(super::player::span(&flat));
         }
         self.player.advance(ui.input(|input| input.time), self.settings.fps);
         if self.player.is_playing() {
             ui.ctx().request_repaint_after_secs((0.5 / self.settings.fps) as f32);
         }
+        // What has keys is shown and set as it is at the frame.
+        self.project.look_at(self.asks_frame());
     }
 
     fn page(&mut self, ui: &mut Ui) {
@@ -218,48 +255,61 @@ impl App {
         }
         let width = self.settings.inspector_width;
         let panel = Panel::right("inspector").resizable(true).default_size(width).min_size(200.0);
-        let shown =
-            panel.show(ui, |ui| inspector::show(ui, &mut self.project, &self.selection, &self.statuses));
+        let context = inspector::Context {
+            selection: &self.selection,
+            statuses: &self.statuses,
+            opened: self.canvas.group(),
+            frame: self.asks_frame(),
+            takes_keyboard: std::mem::take(&mut self.inspects),
+        };
+        let shown = panel.show(ui, |ui| {
+            // What is too wide is cut: a panel that grew with it would move the canvas with each selection.
+            let (rect, _) = ui.allocate_exact_size(ui.available_size(), Sense::hover());
+            let mut inside = ui.new_child(UiBuilder::new().max_rect(rect));
+            inside.set_clip_rect(rect.expand(4.0).intersect(ui.clip_rect()));
+            inspector::show(&mut inside, &mut self.project, &context)
+        });
         self.settings.inspector_width = shown.response.rect.width();
-        let height = self.settings.canvas_height;
+        if let Some(name) = shown.inner {
+            self.selection.only(&name);
+            self.canvas.reveal(&name);
+        }
+        // Of the window's height enough for a graph of seven layers to be read.
+        let usual = (CANVAS_SHARE * ui.ctx().content_rect().height()).round();
+        let height = self.settings.canvas_height.unwrap_or(usual);
         let panel = Panel::bottom("canvas").resizable(true).default_size(height).min_size(120.0);
         let shown = panel.frame(Frame::new()).show(ui, |ui| {
             let (project, selection) = (&mut self.project, &mut self.selection);
             self.canvas.show(ui, project, selection, &self.statuses, &self.thumbnails)
         });
-        self.settings.canvas_height = shown.response.rect.height();
+        let height = shown.response.rect.height();
+        if (height - usual).abs() > 1.0 && ui.input(|input| input.pointer.any_down()) {
+            self.settings.canvas_height = Some(height);
+        }
         for request in shown.inner {
             match request {
                 Request::Show(name) => self.chosen = Some(name),
-                Request::Inspect(name) => self.selection.only(&name),
+                Request::Inspect(name) => {
+                    self.selection.only(&name);
+                    self.canvas.reveal(&name);
+                    self.inspects = true;
+                }
                 Request::SavePreset(name) => self.ask_preset(&name),
             }
         }
         let frame = Frame::central_panel(ui.style()).inner_margin(6.0);
         CentralPanel::default().frame(frame).show(ui, |ui| {
+            let before = self.project.revision();
             self.with_scene(|viewport, project, scene| viewport.show(ui, project, scene));
+            // A hand on a camera with keys sets one, at a frame that stands.
+            let camera = self.look.as_ref().and_then(|look| look.camera.as_ref());
+            if before != self.project.revision()
+                && camera.is_some_and(|name| Viewport::has_keys(self.project.document(), name))
+            {
+                self.player.stop();
+            }
         });
     }
-}
-
-/// The camera as its node says it; `None` where its parameters are not plain numbers.
-fn camera_of(document: &Document, name: &str) -> Option<Camera> {
-    let node = document.node(name)?;
-    let spec = catalog().find(&node.type_id)?;
-    let params =
-        crate::graph::Params::resolve(spec.params, &node.params, &document.base, Default::default()).ok()?;
-    // What moves with the frame is not moved by hand.
-    if node.params.values().any(serde_json::Value::is_object) {
-        return None;
-    }
-    Some(Camera {
-        position: glam::DVec3::from_array(params.vec("position")),
-        look_at: glam::DVec3::from_array(params.vec("look_at")),
-        up: glam::DVec3::from_array(params.vec("up")),
-        fov_y_deg: params.f64("fov_y_deg"),
-        width: params.i64("width") as usize,
-        height: params.i64("height") as usize,
-    })
 }
 
 impl eframe::App for App {

@@ -7,7 +7,8 @@
 use std::collections::HashSet;
 
 use super::viewport::Tone;
-use crate::graph::{Document, End, NodeSpec, ParamKind, PortType};
+use crate::camera::Camera;
+use crate::graph::{Document, End, Moment, NodeSpec, ParamKind, Params, PortType};
 use crate::image::tonemap::Curve;
 use crate::nodes::catalog;
 
@@ -26,6 +27,8 @@ pub struct Look {
     pub medium: Option<String>,
 }
 
+const CAMERA: &str = "camera";
+
 /// What is looked at; `None` where no node gives a picture.
 pub fn look(document: &Document, chosen: Option<&str>) -> Option<Look> {
     let chosen = chosen.and_then(|name| of_node(document, name)).or_else(|| {
@@ -39,7 +42,7 @@ pub fn look(document: &Document, chosen: Option<&str>) -> Option<Look> {
     let above = above(document, &chosen.1.node);
     let of_kind = |kind: &str| above.iter().find(|name| document.nodes[**name].type_id == kind);
     Some(Look {
-        camera: of_kind("camera").map(|name| (*name).to_owned()),
+        camera: of_kind(CAMERA).map(|name| (*name).to_owned()),
         medium: of_kind("medium").map(|name| (*name).to_owned()),
         chosen: chosen.0,
         source: chosen.1,
@@ -70,7 +73,7 @@ fn of_node(document: &Document, name: &str) -> Option<(String, End, Option<Strin
 }
 
 /// The nodes that a node reads, directly or not, the nearest first; itself too.
-fn above<'a>(document: &'a Document, name: &'a str) -> Vec<&'a str> {
+pub fn above<'a>(document: &'a Document, name: &'a str) -> Vec<&'a str> {
     let mut found = vec![name];
     let mut next = 0;
     while let Some(&name) = found.get(next) {
@@ -97,6 +100,22 @@ pub fn tone(document: &Document, look: &Look, other: Tone) -> Tone {
         (Some(ev), Some(curve)) => Tone { exposure_ev: ev as f32, curve },
         _ => other,
     }
+}
+
+/// The camera as it is at the frame; `None` where its node would refuse its parameters.
+pub fn camera(document: &Document, name: &str) -> Option<Camera> {
+    let node = document.node(name).filter(|node| node.type_id == CAMERA)?;
+    let spec = catalog().find(CAMERA)?;
+    let moment = Moment { frame: document.frame, is_aside: false };
+    let params = Params::resolve(spec.params, &node.params, &document.base, moment).ok()?;
+    Some(Camera {
+        position: glam::DVec3::from_array(params.vec("position")),
+        look_at: glam::DVec3::from_array(params.vec("look_at")),
+        up: glam::DVec3::from_array(params.vec("up")),
+        fov_y_deg: params.f64("fov_y_deg"),
+        width: params.i64("width") as usize,
+        height: params.i64("height") as usize,
+    })
 }
 
 /// Nodes that are wired, give something and write nothing: what may be run only to know more of it.
@@ -170,6 +189,21 @@ mod tests {
             !harmless(&document).contains(&"save".to_owned())
                 && !harmless(&document).contains(&"loose".to_owned())
         );
+    }
+
+    #[test]
+    fn a_camera_is_where_it_is_at_the_frame() {
+        let mut document = document();
+        let keys = r#"{"keys": [[10, [0, 0, 4]], [20, [2, 0, 4]]]}"#;
+        document.set(catalog(), "camera.position", keys).unwrap();
+        let x = |frame: Option<i64>| {
+            let document = Document { frame, ..document.clone() };
+            camera(&document, "camera").unwrap().position.x
+        };
+        assert_eq!([None, Some(10), Some(15), Some(30)].map(x), [0.0, 0.0, 1.0, 2.0]);
+        assert_eq!(camera(&document, "march"), None);
+        document.nodes["camera"].params.insert("fov_y_deg".to_owned(), 999.into());
+        assert_eq!(camera(&document, "camera"), None);
     }
 
     #[test]

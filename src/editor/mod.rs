@@ -25,6 +25,8 @@ mod preview;
 mod project;
 mod selection;
 mod settings;
+#[cfg(test)]
+mod snapshot;
 mod status;
 mod theme;
 mod viewport;
@@ -36,7 +38,7 @@ use crate::gpu::{AdapterChoice, adapters};
 use crate::template;
 
 pub use action::{ACTIONS, Action, ActionSpec};
-pub use app::App;
+pub use app::{App, PicturesSeen};
 pub use project::{Autosave, Project, Recoverable, recoverable, state_folder, versions};
 pub use selection::Selection;
 pub use status::{NodeState, NodeStatus, Statuses};
@@ -61,13 +63,7 @@ pub enum EditorError {
 /// # Errors
 /// Without a display or a driver, and for a graph or a volume that cannot be read.
 pub fn open(graph: Option<&Path>, adapter: &AdapterChoice) -> Result<(), EditorError> {
-    let project = match graph {
-        Some(path) if path.extension().is_some_and(|ending| ending == "vdb") || path.is_dir() => {
-            Some(Project::new(template::new_graph(&template::measure(path, true)?)))
-        }
-        Some(path) => Some(Project::load(path)?),
-        None => None,
-    };
+    let project = graph.map(project_of).transpose()?;
     if cfg!(target_os = "linux") && !has_display() {
         let remedy = "there is no display (neither DISPLAY nor WAYLAND_DISPLAY is set); to render without a \
                       window, type `tyndall render GRAPH -o picture.png`";
@@ -88,6 +84,17 @@ pub fn open(graph: Option<&Path>, adapter: &AdapterChoice) -> Result<(), EditorE
     });
     eframe::run_native("tyndall", options, create)
         .map_err(|error| EditorError::Window(format!("the window cannot be opened: {error}")))
+}
+
+/// A graph, or a volume or folder of frames lit by [`template::new_graph`].
+///
+/// # Errors
+/// For a graph or a volume that cannot be read.
+pub fn project_of(path: &Path) -> Result<Project, EditorError> {
+    if path.extension().is_some_and(|ending| ending == "vdb") || path.is_dir() {
+        return Ok(Project::new(template::new_graph(&template::measure(path, true)?)));
+    }
+    Ok(Project::load(path)?)
 }
 
 fn has_display() -> bool {

@@ -5,14 +5,14 @@
 //! the frame before it stays in the window. Which frames there are follows from numbered sequences and from keys.
 //! Pure functions of the clock, tested here.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value as Json;
 
 use crate::graph::Document;
 use crate::volume::sequence::Sequence;
 
-/// First and last frame of a document, and those in between that have no file; `None` where nothing changes
+/// First and last frame of a flat document, and those in between that have no file; `None` where nothing changes
 /// with the frame.
 pub fn span(document: &Document) -> Option<([i64; 2], BTreeSet<i64>)> {
     let mut found: Option<[i64; 2]> = None;
@@ -28,7 +28,7 @@ pub fn span(document: &Document) -> Option<([i64; 2], BTreeSet<i64>)> {
             }
         }
         let path = node.params.get("path").and_then(Json::as_str);
-        let Some(path) = path.filter(|_| node.type_id == "load_vdb") else { continue };
+        let Some(path) = path.filter(|_| node.type_id == LOADER) else { continue };
         let Ok(Sequence::Numbered { files, .. }) = Sequence::find(&document.base.join(path)) else {
             continue;
         };
@@ -43,6 +43,9 @@ pub fn span(document: &Document) -> Option<([i64; 2], BTreeSet<i64>)> {
     }
     Some((found?, missing))
 }
+
+/// The kind of node that reads a frame's file.
+pub const LOADER: &str = "load_vdb";
 
 /// Frames of the keys of a parameter, also inside of a record.
 fn key_frames(json: &Json) -> Vec<i64> {
@@ -62,24 +65,56 @@ pub struct Player {
     pub range: [i64; 2],
     /// After the last comes the first.
     pub loops: bool,
-    /// Frames whose picture is known.
-    pub known: BTreeSet<i64>,
-    /// Frames that have none, by their files.
-    pub broken: BTreeSet<i64>,
+    /// Frames whose files have been read and are kept.
+    pub loaded: BTreeSet<i64>,
+    /// Frames whose whole picture is kept.
+    pub cached: BTreeSet<i64>,
+    /// Frames that have no picture, and why.
+    pub broken: BTreeMap<i64, String>,
+    /// First and last frame of the document; `None` where nothing changes with the frame.
+    span: Option<[i64; 2]>,
     /// When and at which frame it began to play.
     started: Option<(f64, i64)>,
 }
 
 impl Player {
-    /// At the first frame of a span; a frame that is inside of it stays.
-    pub fn set_span(&mut self, range: [i64; 2], missing: BTreeSet<i64>) {
-        if self.range != range {
-            self.range = range;
-            self.loops = true;
+    /// At the first frame of a document; a frame that is inside of its span stays, and so does a range that was
+    /// chosen.
+    pub fn set_span(&mut self, found: Option<([i64; 2], BTreeSet<i64>)>) {
+        let (span, missing) = found.unzip();
+        if self.span != span {
+            if self.span.is_none() {
+                self.loops = true;
+            }
+            if self.span.is_none_or(|before| before == self.range) {
+                self.range = span.unwrap_or_default();
+            }
+            self.span = span;
         }
-        self.frame = self.frame.clamp(range[0], range[1]);
-        self.known.clear();
-        self.broken = missing;
+        self.frame = self.frame.clamp(self.range[0], self.range[1]);
+        // What an edit changed is not the picture that is kept.
+        self.cached.clear();
+        let missing = missing.unwrap_or_default().into_iter();
+        self.broken = missing.map(|frame| (frame, "there is no file of this frame".to_owned())).collect();
+    }
+
+    /// Whether something changes with the frame.
+    pub fn has_frames(&self) -> bool {
+        self.span.is_some()
+    }
+
+    /// Frames of which something is kept and `frame`, from the furthest to the nearest, itself last.
+    pub fn kept(&self, frame: i64) -> Vec<i64> {
+        let mut frames: BTreeSet<i64> = self.loaded.union(&self.cached).copied().collect();
+        frames.insert(frame);
+        let mut frames: Vec<i64> = frames.into_iter().collect();
+        frames.sort_by_key(|other| std::cmp::Reverse(other.abs_diff(frame)));
+        frames
+    }
+
+    /// Ends the playing.
+    pub fn stop(&mut self) {
+        self.started = None;
     }
 
     /// Whether it goes on by itself.
@@ -135,6 +170,30 @@ mod tests {
         assert_eq!(player.frame, 10);
         player.go_to(99);
         assert!(player.frame == 19 && !player.is_playing());
+    }
+
+    #[test]
+    fn a_chosen_range_outlives_edits() {
+        let mut player = Player::default();
+        assert!(!player.has_frames());
+        player.set_span(Some(([1, 10], [4].into())));
+        assert_eq!((player.frame, player.range, player.loops), (1, [1, 10], true));
+        assert_eq!(player.broken.keys().copied().collect::<Vec<_>>(), [4]);
+        (player.range, player.frame, player.loops) = ([1, 48], 40, false);
+        player.cached.insert(40);
+        player.broken.insert(40, "damaged".to_owned());
+        player.set_span(Some(([1, 10], [].into())));
+        assert_eq!((player.frame, player.range, player.loops), (40, [1, 48], false));
+        assert!(player.cached.is_empty() && player.broken.is_empty());
+        // A key at 40.
+        player.set_span(Some(([1, 40], [].into())));
+        assert_eq!(player.range, [1, 48]);
+        // Nobody chose: the range goes with the document.
+        player.range = [1, 40];
+        player.set_span(Some(([1, 20], [].into())));
+        assert_eq!((player.frame, player.range), (20, [1, 20]));
+        player.set_span(None);
+        assert!(!player.has_frames());
     }
 
     #[test]

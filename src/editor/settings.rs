@@ -47,8 +47,8 @@ pub struct Settings {
     pub recent: Vec<PathBuf>,
     /// Width of the inspector, in points.
     pub inspector_width: f32,
-    /// Height of the canvas, in points.
-    pub canvas_height: f32,
+    /// Height of the canvas, in points, where the user chose one.
+    pub canvas_height: Option<f32>,
     /// Where files are looked for first.
     pub folder: Option<PathBuf>,
     /// Pictures a second of the timeline.
@@ -62,7 +62,7 @@ impl Default for Settings {
             scale: 1.0,
             recent: Vec::new(),
             inspector_width: 300.0,
-            canvas_height: 280.0,
+            canvas_height: None,
             folder: None,
             fps: 24.0,
         }

@@ -6,14 +6,18 @@
 //! of the waiting requests only the newest is taken. Where the full fields are cached (only the camera
 //! moved) they are kept, and the picture alone gets smaller. Each reply carries the number of its request.
 //!
+//! It runs at a lower priority than the window (on Linux, where that is a matter of the thread).
+//!
 //! A device that is lost, or out of memory, is told, opened anew (its cache forgotten), and the request is
 //! tried once more; after that it waits for the next request. A panic in a node counts as a lost device.
 
+use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Instant;
 
+use super::player::LOADER;
 use super::preview::{self, Level, Pace};
 use crate::gpu::{AdapterChoice, GpuError, OUT_OF_MEMORY};
 use crate::graph::{CancelToken, Category, Document, Evaluation, Event, Outcome, PortType, Target, Value};
@@ -29,10 +33,16 @@ pub struct Ask {
     pub looked_at: Vec<String>,
     /// Nodes that are run after the picture is there, for what they tell.
     pub rest: Vec<String>,
+    /// Nodes that are shown over the pictures: solved as far as these, and before them.
+    pub beside: Vec<String>,
     /// Nodes of which all values are wanted, not the pictures alone.
     pub wanted: Vec<String>,
+    /// Frames of which it is wanted whether they are still kept, the most wanted last.
+    pub frames: Vec<i64>,
     /// The pointer is down: as much as keeps up.
     pub is_drag: bool,
+    /// The device is to be opened anew first.
+    pub is_restart: bool,
 }
 
 /// What the worker tells.
@@ -46,9 +56,18 @@ pub enum Reply {
         event: Event,
         /// Of the document itself, not of a preview.
         is_full: bool,
+        /// The frame that was asked for.
+        frame: Option<i64>,
     },
     /// Values that came to be.
     Solved(Solved),
+    /// Which of the frames that were asked about are kept.
+    Kept {
+        /// Their files have been read.
+        loaded: BTreeSet<i64>,
+        /// Their pictures are there, as large as they are to be.
+        cached: BTreeSet<i64>,
+    },
     /// Nothing is left to do.
     Rested,
     /// The device is gone, out of memory, or there is none.
@@ -65,6 +84,8 @@ pub enum Reply {
 pub struct Solved {
     /// How much was computed.
     pub level: Level,
+    /// The frame that was asked for.
+    pub frame: Option<i64>,
     /// Pictures and cameras by node and output, and all values of the wanted nodes.
     pub values: Vec<(String, &'static str, Value)>,
     /// Of each node that ran.
@@ -101,6 +122,7 @@ impl Worker {
         let (done, replies) = channel();
         let adapter = adapter.clone();
         let thread = std::thread::spawn(move || {
+            step_back();
             let tell = |number, reply| {
                 // A window that is gone needs no replies.
                 let _ = done.send((number, reply));
@@ -145,6 +167,14 @@ impl Drop for Worker {
     }
 }
 
+/// Lets the window's frames go first. Where there is no GPU the driver's threads, which inherit it, would
+/// otherwise keep every core from them.
+fn step_back() {
+    #[cfg(target_os = "linux")]
+    // Of two threads that want a core, one of nice 5 gets a quarter. Refused, the window is less smooth.
+    let _ = rustix::process::nice(5);
+}
+
 fn serve(adapter: &AdapterChoice, to_do: &Receiver<Request>, tell: &dyn Fn(u64, Reply)) {
     let mut bench = Bench { session: None, coarse: Pace::default(), fine: Pace::default() };
     // Opened at once, so that the first request need not wait for it.
@@ -153,7 +183,12 @@ fn serve(adapter: &AdapterChoice, to_do: &Receiver<Request>, tell: &dyn Fn(u64, 
     }
     while let Ok(mut request) = to_do.recv() {
         while let Ok(newer) = to_do.try_recv() {
+            let is_restart = request.ask.is_restart || newer.ask.is_restart;
             request = newer;
+            request.ask.is_restart = is_restart;
+        }
+        if request.ask.is_restart {
+            bench.session = None;
         }
         let mut is_second_try = false;
         while let Err(message) = bench.answer(adapter, &request, tell) {
@@ -203,14 +238,18 @@ impl Bench {
     }
 
     fn levels_of(&mut self, request: &Request, tell: &dyn Fn(u64, Reply)) -> Result<(), String> {
+        let Ask { looked_at, beside, rest, .. } = &request.ask;
         for level in self.levels(&request.ask) {
-            self.solve(request, level, &request.ask.looked_at, tell)?;
-            if request.cancel.is_cancelled() {
-                return Ok(());
+            for nodes in [beside, looked_at] {
+                self.solve(request, level, nodes, tell)?;
+                if request.cancel.is_cancelled() {
+                    return Ok(());
+                }
             }
         }
         if !request.ask.is_drag {
-            self.solve(request, Level::FULL, &request.ask.rest, tell)?;
+            self.solve(request, Level::FULL, rest, tell)?;
+            self.tell_kept(request, tell);
         }
         if !request.cancel.is_cancelled() {
             tell(request.number, Reply::Rested);
@@ -218,11 +257,38 @@ impl Bench {
         Ok(())
     }
 
+    /// Says which frames are kept. Each look makes what it finds the most recently used, so that of many frames
+    /// those are kept that are the most wanted.
+    fn tell_kept(&mut self, request: &Request, tell: &dyn Fn(u64, Reply)) {
+        let Ask { document, looked_at, frames, .. } = &request.ask;
+        let Some(session) = self.session.as_mut().filter(|_| !frames.is_empty()) else { return };
+        let loaders = document.nodes.iter().filter(|(_, node)| node.type_id == LOADER);
+        let loaders: Vec<&str> = loaders.map(|(name, _)| name.as_str()).collect();
+        let mut target = names(looked_at);
+        target.extend(&loaders);
+        let (mut loaded, mut cached) = (BTreeSet::new(), BTreeSet::new());
+        for frame in frames {
+            if request.cancel.is_cancelled() {
+                return;
+            }
+            let document = Document { frame: Some(*frame), ..document.clone() };
+            let found = session.recall(&document, Target::Nodes(&target));
+            let is_there = |name: &&str| matches!(found.nodes.get(*name), Some(Outcome::Done { .. }));
+            if !loaders.is_empty() && loaders.iter().all(is_there) {
+                loaded.insert(*frame);
+            }
+            if !looked_at.is_empty() && names(looked_at).iter().all(is_there) {
+                cached.insert(*frame);
+            }
+        }
+        tell(request.number, Reply::Kept { loaded, cached });
+    }
+
     /// In which steps a request is answered.
     fn levels(&mut self, ask: &Ask) -> Vec<Level> {
         let Some(session) = &mut self.session else { return Vec::new() };
         if ask.looked_at.is_empty() {
-            return Vec::new();
+            return if ask.beside.is_empty() { Vec::new() } else { vec![Level::FULL] };
         }
         let small = Level { share: self.fine.share(), is_coarse: false };
         let names = names(&ask.looked_at);
@@ -258,10 +324,11 @@ impl Bench {
             return Ok(());
         }
         let start = Instant::now();
+        let frame = request.ask.document.frame;
         let document = preview::at(&request.ask.document, level);
         let target = names(nodes);
         let solved = session.solve(&document, Target::Nodes(&target), &request.cancel, &mut |event| {
-            tell(request.number, Reply::Event { event: event.clone(), is_full: level.is_full() });
+            tell(request.number, Reply::Event { event: event.clone(), is_full: level.is_full(), frame });
         });
         let wall_ms = start.elapsed().as_secs_f64() * 1e3;
         if let Err(error @ GpuError::Lost(_)) = session.gpu().check("the picture") {
@@ -271,7 +338,9 @@ impl Bench {
         if let Some((name, why)) = short {
             return Err(format!("{name}: {why}"));
         }
-        if !solved.evaluation.cancelled {
+        // What was kept says nothing of the machine's speed.
+        let is_new = |name: &String| solved.costs.iter().any(|cost| cost.name == *name && !cost.cached);
+        if !solved.evaluation.cancelled && request.ask.looked_at.iter().any(is_new) {
             match (level.is_full(), level.is_coarse) {
                 (true, _) => {}
                 (_, true) => self.coarse.measured(level.share, wall_ms),
@@ -280,7 +349,7 @@ impl Bench {
         }
         let values = values(&solved.evaluation, &request.ask.wanted);
         let (cache_bytes, gpu_bytes) = (session.cached_bytes(), session.gpu().bytes_now());
-        let solved = Solved { level, values, costs: solved.costs, wall_ms, cache_bytes, gpu_bytes };
+        let solved = Solved { level, frame, values, costs: solved.costs, wall_ms, cache_bytes, gpu_bytes };
         tell(request.number, Reply::Solved(solved));
         Ok(())
     }

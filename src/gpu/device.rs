@@ -188,7 +188,7 @@ impl Gpu {
 
     /// As if the driver had said that the device is gone.
     #[cfg(test)]
-    pub(super) fn lose(&self, why: &str) {
+    pub(crate) fn lose(&self, why: &str) {
         *self.lost.lock().unwrap() = Some(why.to_owned());
     }
 

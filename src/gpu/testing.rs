@@ -27,3 +27,9 @@ pub fn fresh() -> Option<Gpu> {
         }
     }
 }
+
+/// The backends that pictures of the window may be drawn by: those that Tyndall computes on. Crates that tests alone
+/// use bring others in.
+pub fn window_backends() -> wgpu::Backends {
+    wgpu::Backends::VULKAN | wgpu::Backends::METAL | wgpu::Backends::DX12
+}

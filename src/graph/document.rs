@@ -243,6 +243,22 @@ impl Document {
         insides.for_each(|inside| inside.set_base(base));
     }
 
+    /// Whether two documents are one, also in the order of nodes and of a group's ports, which equality of maps does
+    /// not see.
+    pub fn is_as(&self, other: &Self) -> bool {
+        let is_inside_as = || {
+            let pairs = self.nodes.values().zip(other.nodes.values());
+            let mut insides = pairs.filter_map(|(a, b)| a.inside.as_ref().zip(b.inside.as_ref()));
+            insides.all(|(a, b)| a.is_as(b))
+        };
+        let is_ordered_as = || {
+            self.nodes.keys().eq(other.nodes.keys())
+                && self.inputs.keys().eq(other.inputs.keys())
+                && self.outputs.keys().eq(other.outputs.keys())
+        };
+        self == other && is_ordered_as() && is_inside_as()
+    }
+
     /// Whether some node can be another in another frame.
     pub fn varies(&self, catalog: Catalog) -> bool {
         self.nodes.values().any(|node| node.varies(catalog))

@@ -1,5 +1,5 @@
 //! Changes of a document: one parameter set from text here, `--set node.parameter=value`, and in the modules
-//! below nodes, wires, the clipboard, groups and the folder. What is refused leaves the document as it was.
+//! below nodes, wires, the clipboard, groups with their ports, and the folder. What is refused leaves the document as it was.
 //!
 //! The text is JSON; what is no JSON is a string where a string is taken (text, choice, path), else an
 //! error. A member of a record is `medium.emission.flame`, and the record comes to be when it was null.
@@ -8,9 +8,11 @@
 //! and the exact text of every error.
 
 mod clipboard;
+mod group_ports;
 mod groups;
 mod nodes;
 mod paths;
+mod unknown;
 mod wires;
 
 use std::path::Path;

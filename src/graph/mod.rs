@@ -40,7 +40,7 @@ pub use flat::{Flattened, Silence, flatten};
 pub use key::Key;
 pub use params::{Moment, ParamProblem, ParamValue, Params, check_value};
 pub use plan::{Job, Plan, Source, Target, Work};
-pub use ports::Port;
+pub use ports::{Port, Side};
 pub use report::{Decision, Report, StageWork};
 pub use spec::{Catalog, Category, Limits, NodeSpec, ParamKind, ParamSpec, PortSpec, PortType, Timing};
 pub use suggest::did_you_mean;

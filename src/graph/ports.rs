@@ -2,8 +2,28 @@
 //!
 //! Tested by a group with ports of every sort.
 
+use std::fmt;
+
 use super::document::{Document, End, Node};
 use super::spec::{Catalog, PortSpec};
+
+/// On which side of its node a port is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// What it reads.
+    Input,
+    /// What it gives.
+    Output,
+}
+
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Input => "input",
+            Self::Output => "output",
+        })
+    }
+}
 
 /// A port as it is seen from outside.
 #[derive(Debug, Clone, Copy)]

@@ -1,16 +1,20 @@
-//! What the nodes that look at data look at: a grid of a volume, or the extinction of a medium.
+//! What the nodes that look at data look at: a grid of a volume, the extinction of a medium, the optical depth of a
+//! beam, or the fluence of a residual.
 //!
-//! Values sit at voxel centers, trilinear between them; what stands outside of the voxels takes part, as it does in a
-//! medium made of them.
+//! Values sit at voxel centers (of a beam at the corners of cells), trilinear between them; what stands outside of the
+//! voxels takes part, as it does in a medium made of them. Fields of the solver are read back whole: a texture of 64³
+//! takes some milliseconds. Tested through `slice`, by fields that are known.
 
 use std::sync::Arc;
 
 use glam::{DMat4, DVec3, IVec3};
+use half::f16;
 
 use super::Run;
 use crate::graph::{NodeError, ParamSpec, PortSpec, PortType};
-use crate::volume::{Dense, Volume};
-use crate::wire::Medium;
+use crate::optics::spectrum::luminance;
+use crate::volume::{Dense, Lattice, Volume};
+use crate::wire::{Beams, Medium, Residual};
 
 /// A field of numbers.
 pub(super) struct Scalar {
@@ -23,16 +27,29 @@ pub(super) struct Scalar {
     index_from_world: DMat4,
 }
 
-/// Two inputs, of which one is wired.
+/// Inputs, of which one is wired.
 pub(super) const INPUTS: &[PortSpec] = &[
-    PortSpec::new("volume", PortType::Volume, "the grids").optional("the medium is looked at"),
+    PortSpec::new("volume", PortType::Volume, "the grids").optional("another input is looked at"),
     PortSpec::new("medium", PortType::Medium, "its extinction sigma_t [1/m] on the solver's cells")
-        .optional("the volume is looked at"),
+        .optional("another input is looked at"),
+    PortSpec::new("beams", PortType::Beams, "the optical depth tau that one of them has come through")
+        .optional("another input is looked at"),
+    PortSpec::new("residual", PortType::Residual, "luminance of its fluence phi [W/m2]")
+        .optional("another input is looked at"),
 ];
 
 /// Which grid of the volume.
 pub(super) const GRID: ParamSpec =
-    ParamSpec::grid("grid", "density").doc("Name of the grid of the volume; of a medium it says nothing.");
+    ParamSpec::grid("grid", "density").doc("Name of the grid of a volume; of other inputs it says nothing.");
+
+/// Which of the beams.
+pub(super) const BEAM: ParamSpec = ParamSpec::int("beam", 0)
+    .between(0.0, 1e6)
+    .soft(0.0, 31.0)
+    .doc("Which of the beams, from 0; of other inputs it says nothing. Where a surface hides the light, tau is the largest of elsewhere.");
+
+/// Corners that a surface hides hold a depth that no walk gives (`shaders/lib/shadow.wgsl`).
+const HIDDEN: f32 = f16::MAX.to_f32_const() - 32.0;
 
 impl Scalar {
     /// Of the one input that is wired.
@@ -40,17 +57,80 @@ impl Scalar {
     /// # Errors
     /// Where none or both are; what the volume or the device reports.
     pub fn read(run: &Run) -> Result<Self, NodeError> {
-        match (run.inputs.maybe::<Volume>("volume"), run.inputs.maybe::<Medium>("medium")) {
-            (Some(volume), None) => Self::of_grid(volume, run.params.text("grid")),
-            (None, Some(medium)) => {
+        let wired: Vec<&str> =
+            INPUTS.iter().map(|port| port.name).filter(|name| !run.inputs.values(name).is_empty()).collect();
+        match *wired.as_slice() {
+            ["volume"] => Self::of_grid(run.inputs.one("volume"), run.params.text("grid")),
+            ["medium"] => {
+                let medium: &Medium = run.inputs.one("medium");
                 let values = run.gpu.read_texture(&medium.sigma_t)?;
-                let lattice = &medium.lattice;
-                let dense = Dense { dims: lattice.dims, values, world_from_index: lattice.world_from_index };
-                Ok(Self::new(Arc::new(dense), 0.0, IVec3::ZERO))
+                Ok(Self::of_cells(&medium.lattice, values))
             }
-            (None, None) => Err(NodeError::new("volume and medium are empty: wire one of them")),
-            (Some(_), Some(_)) => Err(NodeError::new("volume and medium are both wired: keep one of them")),
+            ["beams"] => Self::of_beam(run, run.inputs.one("beams"), run.params.i64("beam") as usize),
+            ["residual"] => Self::of_residual(run, run.inputs.one("residual")),
+            [] => Err(NodeError::new("nothing is wired: wire a volume, medium, beams or residual")),
+            [..] => Err(NodeError::new(format!("{} are all wired: keep one of them", wired.join(" and ")))),
         }
+    }
+
+    /// A number for each cell.
+    fn of_cells(lattice: &Lattice, values: Vec<f32>) -> Self {
+        let dense = Dense { dims: lattice.dims, values, world_from_index: lattice.world_from_index };
+        Self::new(Arc::new(dense), 0.0, IVec3::ZERO)
+    }
+
+    fn of_beam(run: &Run, beams: &Beams, n: usize) -> Result<Self, NodeError> {
+        let at_corners = beams.n_at_corners();
+        let tau = beams.tau.as_ref().filter(|_| at_corners > 0).ok_or_else(|| {
+            NodeError::new("the beams have no depths on the medium's grid: nothing scatters, or each light has a grid of its own")
+        })?;
+        if n >= at_corners {
+            let last = at_corners - 1;
+            return Err(NodeError::new(format!(
+                "beam is {n}; there are 0..={last} with depths on the medium's grid"
+            )));
+        }
+        let atlas = tau.texture.dims().map(|n| n as usize);
+        let origin = tau.origin(n / tau.pack).map(|n| n as usize);
+        let texels: Vec<f32> = match tau.pack {
+            1 => run.gpu.read_texture(&tau.texture)?,
+            _ => run.gpu.read_texture::<f16>(&tau.texture)?.into_iter().map(f32::from).collect(),
+        };
+        let [nx, ny, nz] = tau.corners;
+        let corners = (0..nx * ny * nz).map(|idx| [idx % nx, idx / nx % ny, idx / (nx * ny)]);
+        let texel = |[x, y, z]: [usize; 3]| {
+            let [x, y, z] = [x + origin[0], y + origin[1], z + origin[2]];
+            texels[tau.pack * (x + atlas[0] * (y + atlas[1] * z)) + n % tau.pack]
+        };
+        let mut values: Vec<f32> = corners.map(texel).collect();
+        if beams.has_shadows {
+            let largest = values.iter().copied().filter(|tau| *tau <= HIDDEN).fold(0.0, f32::max);
+            values.iter_mut().filter(|tau| **tau > HIDDEN).for_each(|tau| *tau = largest);
+        }
+        // Corner (i, j, k) sits at (i - 1/2, j - 1/2, k - 1/2).
+        let world_from_index = beams.lattice.world_from_index * DMat4::from_translation(DVec3::splat(-0.5));
+        let dense = Dense { dims: tau.corners, values, world_from_index };
+        Ok(Self::new(Arc::new(dense), 0.0, IVec3::ZERO))
+    }
+
+    fn of_residual(run: &Run, residual: &Residual) -> Result<Self, NodeError> {
+        let n_cells: usize = residual.lattice.dims.iter().product();
+        if residual.is_dark {
+            return Ok(Self::of_cells(&residual.lattice, vec![0.0; n_cells]));
+        }
+        let texels: Vec<[f32; 4]> = run.gpu.read_texture(&residual.moments)?;
+        let channels = &residual.channels;
+        let n_texels = texels.len() / channels.count;
+        let phi = |idx: usize| {
+            let of_channel = |c: usize| f64::from(texels[idx + n_texels * (c % channels.count)][0]);
+            luminance(std::array::from_fn(|c| channels.color[c] * of_channel(c))) as f32
+        };
+        // One cell for all, where they are the same everywhere.
+        let values = match n_texels {
+            1 => vec![phi(0); n_cells],
+            _ => (0..n_texels).map(phi).collect(),
+        };
+        Ok(Self::of_cells(&residual.lattice, values))
     }
 
     /// A grid of a volume.

@@ -49,7 +49,7 @@ pub struct Files {
 }
 
 fn dialog(title: &str, folder: Option<&Path>) -> FileDialog {
-    let dialog = FileDialog::new().title(title);
+    let dialog = FileDialog::new().title(title).anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]);
     match folder.filter(|folder| folder.is_dir()) {
         Some(folder) => dialog.initial_directory(folder.to_owned()),
         None => dialog,

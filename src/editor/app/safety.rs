@@ -56,8 +56,10 @@ impl App {
             self.project.keep_versions(state);
         }
         if !self.project.left_out().is_empty() {
-            let lines = self.project.left_out().join("; ");
-            self.toasts.complain(format!("Not understood, and left out when you save: {lines}"));
+            let lines = self.project.left_out().join("\n· ");
+            let what =
+                "Not understood, and left out when you save; Earlier versions then keeps the file as it is:";
+            self.toasts.complain(format!("{what}\n· {lines}"));
         }
         self.safety.shows_versions = false;
     }

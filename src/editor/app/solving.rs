@@ -2,14 +2,16 @@
 
 use glam::DVec3;
 
-use super::App;
+use super::{App, PicturesSeen};
 use crate::editor::NodeState;
 use crate::editor::look::{self, Look};
-use crate::editor::viewport::{self, Picture, Tone};
+use crate::editor::player::LOADER;
+use crate::editor::viewport::{self, Picture, SLICE, Tone};
 use crate::editor::worker::{Ask, Reply, Solved};
-use crate::graph::{Document, Event, PortType, flatten};
-use crate::image::Image;
+use crate::gpu::OUT_OF_MEMORY;
+use crate::graph::{Document, Event, Node, PortType, Wire, flatten};
 use crate::image::tonemap::Curve;
+use crate::image::{Image, Table};
 use crate::nodes::catalog;
 use crate::volume::Lattice;
 use crate::wire::Medium;
@@ -20,9 +22,28 @@ pub struct Asked {
     frame: Option<i64>,
     is_drag: bool,
     look: Option<Look>,
+    slice: Option<(Node, Wire)>,
     number: u64,
     /// What was asked, flat.
     document: Document,
+}
+
+#[cfg(test)]
+impl Asked {
+    /// Counts requests.
+    pub fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// The frame that was asked for.
+    pub fn frame(&self) -> Option<i64> {
+        self.frame
+    }
+
+    /// The slice plane that was asked for.
+    pub fn slice(&self) -> Option<&(Node, Wire)> {
+        self.slice.as_ref()
+    }
 }
 
 impl App {
@@ -31,21 +52,24 @@ impl App {
         let now = context.input(|input| input.time);
         let is_down = context.input(|input| input.pointer.any_down());
         let is_drag = is_down || self.viewport.is_moving(now) || self.player.is_playing();
-        let frame = self.has_frames().then_some(self.player.frame);
-        if frame.is_some_and(|frame| self.player.broken.contains(&frame)) {
+        let frame = self.asks_frame();
+        if frame.is_some_and(|frame| self.player.broken.contains_key(&frame)) {
             return;
         }
         let revision = self.project.revision();
+        let flat = flatten(self.project.document(), catalog());
+        let slice = self.viewport.slice.node(&flat);
         let is_known = self.asked.as_ref().is_some_and(|asked| {
             // A pointer that goes down changes nothing; when it goes up, the rest is made up for.
             (asked.revision, asked.frame) == (revision, frame)
                 && asked.look == self.look
+                && asked.slice == slice
                 && (is_drag || !asked.is_drag)
         });
         if is_known {
             return;
         }
-        let mut document = flatten(self.project.document(), catalog()).into_owned();
+        let mut document = flat.into_owned();
         document.frame = frame;
         let changed: Vec<String> = match &self.asked {
             Some(asked) => look::changed(&asked.document, &document).into_iter().map(str::to_owned).collect(),
@@ -65,11 +89,26 @@ impl App {
         let mut rest = look::harmless(&document);
         // The node that is looked at comes first among the rest, and its tone_map tells its own errors.
         rest.sort_by_key(|name| look.as_ref().is_none_or(|look| look.tone.as_ref() != Some(name)));
-        let wanted = look.iter().filter_map(|look| look.medium.clone()).collect();
+        let mut wanted: Vec<String> = look.iter().filter_map(|look| look.medium.clone()).collect();
         self.figures.progress = [0, rest.len()];
-        let ask = Ask { document: document.clone(), looked_at, rest, wanted, is_drag };
+        let mut with_slice = document.clone();
+        let beside = match self.viewport.slice.add_to(&mut with_slice) {
+            true => vec![SLICE.to_owned()],
+            false => Vec::new(),
+        };
+        wanted.extend(beside.iter().cloned());
+        let frames = frame.map(|frame| self.player.kept(frame)).unwrap_or_default();
+        let is_restart = std::mem::take(&mut self.restarts);
+        let ask = Ask { document: with_slice, looked_at, rest, beside, wanted, frames, is_drag, is_restart };
         let number = self.worker.ask(ask);
-        self.asked = Some(Asked { revision, frame, is_drag, look, number, document });
+        self.viewport.slice.asked(number);
+        self.asked = Some(Asked { revision, frame, is_drag, look, slice, number, document });
+    }
+
+    /// Opens the device anew, and looks again at frames that were broken.
+    pub(super) fn retry(&mut self) {
+        (self.asked, self.spanned, self.restarts) = (None, None, true);
+        self.figures.trouble = None;
     }
 
     pub(super) fn listen(&mut self, context: &egui::Context) {
@@ -80,8 +119,12 @@ impl App {
                     self.figures.adapter = Some(adapter);
                     self.figures.trouble = None;
                 }
-                Reply::Event { event, is_full } => self.note(event, is_full && is_last),
-                Reply::Solved(solved) => self.take(context, solved, is_last),
+                Reply::Event { event, is_full, frame } => self.note(event, is_full && is_last, frame),
+                Reply::Solved(solved) => self.take(context, solved, number),
+                Reply::Kept { loaded, cached } if is_last => {
+                    (self.player.loaded, self.player.cached) = (loaded, cached);
+                }
+                Reply::Kept { .. } => {}
                 Reply::Rested => self.figures.running = None,
                 Reply::Trouble { message, retries } => {
                     self.figures.running = None;
@@ -93,8 +136,13 @@ impl App {
         self.figures.n_failed = failed.count();
     }
 
-    fn take(&mut self, context: &egui::Context, solved: Solved, is_last: bool) {
-        let Solved { level, values, costs, wall_ms, cache_bytes, gpu_bytes } = solved;
+    fn take(&mut self, context: &egui::Context, solved: Solved, number: u64) {
+        let Solved { level, frame, values, costs, wall_ms, cache_bytes, gpu_bytes } = solved;
+        let is_last = self.asked.as_ref().is_none_or(|asked| asked.number == number);
+        let (of_slice, values): (Vec<_>, Vec<_>) = values.into_iter().partition(|(name, ..)| name == SLICE);
+        if let [(_, _, image), (_, _, plane)] = of_slice.as_slice() {
+            self.viewport.slice.take(number, image, plane.get::<Table>());
+        }
         (self.figures.cache_bytes, self.figures.gpu_bytes) = (cache_bytes, gpu_bytes);
         let source = self.look.as_ref().map(|look| look.source.clone());
         for (name, port, value) in values {
@@ -103,6 +151,8 @@ impl App {
                     source.as_ref().is_some_and(|source| source.node == name && source.port == port);
                 if is_looked_at {
                     self.figures.trouble = None;
+                    let count = self.pictures_seen.count + 1;
+                    self.pictures_seen = PicturesSeen { count, is_whole: level.is_full() };
                     match level.is_full() {
                         true if wall_ms > 1.0
                             && costs.iter().any(|cost| cost.name == name && !cost.cached) =>
@@ -114,9 +164,8 @@ impl App {
                         }
                         _ => {}
                     }
-                    if let Some(frame) = self.asked.as_ref().and_then(|asked| asked.frame).filter(|_| is_last)
-                    {
-                        self.player.known.insert(frame);
+                    if let Some(frame) = frame.filter(|_| is_last && level.is_full()) {
+                        self.player.cached.insert(frame);
                     }
                 }
                 self.small_picture(context, &name, value.get());
@@ -150,7 +199,7 @@ impl App {
     }
 
     /// Notes what a node does. `counts` where it is of the document as it is now.
-    fn note(&mut self, event: Event, counts: bool) {
+    pub(super) fn note(&mut self, event: Event, counts: bool, frame: Option<i64>) {
         let (Event::Started { name }
         | Event::Finished { name, .. }
         | Event::Failed { name, .. }
@@ -162,6 +211,18 @@ impl App {
             // It ran for the sake of another frame; what it says of that one is not this one's.
             self.figures.running = Some(format!("{name} (frame {frame})"));
             return;
+        }
+        if name == SLICE {
+            match event {
+                Event::Failed { message, .. } => self.viewport.slice.fail(message),
+                Event::Skipped { because, .. } => self.viewport.slice.fail(format!("{because} failed")),
+                Event::Started { name } => self.figures.running = Some(name),
+                _ => {}
+            }
+            return;
+        }
+        if let Some(frame) = frame {
+            self.note_frame(&event, frame);
         }
         let name = name.clone();
         let status = self.statuses.entry(name.clone()).or_default();
@@ -188,22 +249,39 @@ impl App {
             }
             Event::Failed { message, .. } => {
                 status.state = NodeState::Failed(message);
-                let asked = self.asked.as_ref();
-                let is_loader =
-                    asked.and_then(|asked| asked.document.nodes.get(&name)).map(|node| &node.type_id);
-                if let (true, Some(frame)) =
-                    (is_loader.is_some_and(|kind| kind == "load_vdb"), asked.and_then(|asked| asked.frame))
-                {
-                    self.player.broken.insert(frame);
-                }
             }
             Event::Skipped { because, .. } => status.state = NodeState::Skipped(because),
             Event::Cancelled => {}
         }
     }
 
-    /// Why there is no picture of the document as it is: the node that failed, and its message.
+    /// Notes what a node says of a frame: that its file has been read, or that it has no picture.
+    fn note_frame(&mut self, event: &Event, frame: i64) {
+        let Some(asked) = &self.asked else { return };
+        let document = &asked.document;
+        let is_loader = |name: &str| document.nodes.get(name).is_some_and(|node| node.type_id == LOADER);
+        match event {
+            Event::Finished { name, .. } if is_loader(name) => drop(self.player.loaded.insert(frame)),
+            Event::Failed { name, message } if !message.starts_with(OUT_OF_MEMORY) => {
+                // A damaged file may fail where its grids are decoded, which is a node that reads the loader.
+                let reads_file = look::above(document, name).into_iter().any(is_loader);
+                let is_seen = asked
+                    .look
+                    .as_ref()
+                    .is_some_and(|look| look::above(document, &look.source.node).contains(&name.as_str()));
+                if reads_file && is_seen {
+                    self.player.broken.insert(frame, format!("{name}: {message}"));
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Why there is no picture of the document as it is: the frame or node that failed, and its message.
     pub(super) fn problem(&self) -> Option<(String, String)> {
+        if let Some(why) = self.player.broken.get(&self.player.frame).filter(|_| self.has_frames()) {
+            return Some((format!("Frame {}", self.player.frame), why.clone()));
+        }
         let source = &self.look.as_ref()?.source.node;
         let name = match &self.statuses.get(source)?.state {
             NodeState::Failed(_) => source,

@@ -4,6 +4,7 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
 
 use super::*;
+use crate::camera::Camera;
 
 fn harness() -> Harness<'static, App> {
     harness_in(None)
@@ -43,6 +44,63 @@ fn a_preset_opens_as_an_unsaved_copy() {
     assert!(!harness.state().is_open);
 }
 
+/// As the window hands it in.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_dropped_volume_is_lit() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    let volume = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/steam.vdb");
+    harness.input_mut().dropped_files.push(std::sync::Arc::new(Dropped(volume.clone())));
+    harness.run_steps(2);
+    let document = harness.state().document();
+    let node = |kind: &str| document.nodes.values().find(|node| node.type_id == kind).unwrap();
+    assert_eq!(node("load_vdb").params["path"].as_str(), volume.to_str());
+    // Density scale and camera are ordinary parameters.
+    assert!(node("medium").params["density_scale"].as_f64().is_some_and(|scale| scale > 0.0));
+    assert!(node("camera").params["look_at"].is_array());
+    assert!(harness.state().is_open);
+    // What cannot be opened says so, and leaves what is there.
+    let nothing = PathBuf::from("/nowhere/nothing.vdb");
+    let folder = tempfile::tempdir().unwrap();
+    harness.state_mut().project.save_as(&folder.path().join("graph.json")).unwrap();
+    harness.input_mut().dropped_files = vec![std::sync::Arc::new(Dropped(nothing))];
+    harness.run_steps(2);
+    assert!(harness.query_all_by_label_contains("/nowhere/nothing.vdb").next().is_some());
+    assert!(harness.state().is_open);
+}
+
+#[test]
+fn a_link_and_the_enter_key_lead_to_a_node() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.get_by_label("Preset smoke").click();
+    harness.run_steps(3);
+    harness.get_by_label("node medium").click();
+    harness.run_steps(3);
+    harness.get_by_label("plume.volume").click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().selection.active(), Some("plume"));
+    assert!(harness.query_by_label("plume.path").is_some());
+    harness.get_by_label("node sun").click();
+    harness.run_steps(2);
+    harness.key_press(egui::Key::Enter);
+    harness.run_steps(3);
+    assert!(harness.get_by_label("inspector of sun").is_focused());
+}
+
 #[test]
 fn the_palette_finds_and_runs() {
     let mut harness = harness();
@@ -79,7 +137,7 @@ fn a_drag_on_the_picture_is_one_step() {
     harness.run_steps(2);
     let place = |harness: &Harness<App>| {
         let app = harness.state();
-        camera_of(app.document(), app.look.as_ref().unwrap().camera.as_ref().unwrap()).unwrap()
+        look::camera(app.document(), app.look.as_ref().unwrap().camera.as_ref().unwrap()).unwrap()
     };
     let before = place(&harness);
     let at = harness.get_by_label("Picture").rect().center();
@@ -135,4 +193,128 @@ fn an_end_that_nobody_asked_for_keeps_what_is_not_saved() {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     assert_eq!(found(), 1);
+}
+
+/// A window on a graph of a folder.
+fn opened(text: &str, folder: &Path) -> Harness<'static, App> {
+    let file = folder.join("graph.json");
+    std::fs::write(&file, text).unwrap();
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.state_mut().show(Project::load(&file).unwrap());
+    harness.run_steps(2);
+    harness
+}
+
+#[test]
+fn without_a_device_the_graph_is_kept_and_it_is_tried_again() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.get_by_label("Preset smoke").click();
+    // It tries once by itself, and then asks.
+    let wait = |harness: &mut Harness<App>| {
+        harness.run_steps(3);
+        let start = std::time::Instant::now();
+        while harness.query_by_label("Try again").is_none() {
+            assert!(start.elapsed().as_secs() < 60, "it does not ask");
+            std::thread::sleep(std::time::Duration::from_millis(20));
+            harness.run_steps(2);
+        }
+    };
+    wait(&mut harness);
+    assert!(harness.query_by_label_contains("no such adapter").is_some());
+    assert!(harness.state().is_open && harness.state().document().nodes.contains_key("medium"));
+    // The graph can be changed meanwhile.
+    harness.state_mut().project.edit("say", |document| document.about = "mine".to_owned());
+    wait(&mut harness);
+    let before = harness.state().asked.as_ref().map(|asked| asked.number());
+    harness.get_by_label("Try again").click();
+    harness.run_steps(3);
+    assert!(harness.state().asked.as_ref().map(|asked| asked.number()) > before);
+    assert_eq!(harness.state().document().about, "mine");
+}
+
+/// Three frames, of which the medium is made in a group.
+const SEQUENCE: &str = r#"{"tyndall": 1, "nodes": {
+    "files": {"type": "group", "nodes": {"steam": {"type": "load_vdb", "path": "steam_#.vdb"}}, "wires": [],
+        "outputs": {"volume": "steam.volume"}},
+    "medium": {"type": "medium"}, "camera": {"type": "camera"}, "march": {"type": "raymarch"}
+}, "wires": ["files.volume -> medium.volume", "medium.medium -> march.medium", "camera.camera -> march.camera"]}"#;
+
+fn sequence() -> (tempfile::TempDir, Harness<'static, App>) {
+    let folder = tempfile::tempdir().unwrap();
+    for number in 1..=3 {
+        std::fs::write(folder.path().join(format!("steam_{number}.vdb")), "").unwrap();
+    }
+    let harness = opened(SEQUENCE, folder.path());
+    (folder, harness)
+}
+
+fn failed(name: &str, message: &str) -> crate::graph::Event {
+    crate::graph::Event::Failed { name: name.to_owned(), message: message.to_owned() }
+}
+
+#[test]
+fn frames_of_files_in_groups_are_on_the_timeline() {
+    let (_folder, harness) = sequence();
+    assert_eq!(harness.state().player.range, [1, 3]);
+    assert!(harness.query_by_label("Timeline").is_some());
+    assert_eq!(harness.state().document().frame, Some(1));
+    assert!(!harness.state().project.is_unsaved());
+}
+
+#[test]
+fn a_broken_frame_is_told_marked_and_passed_over() {
+    let (_folder, mut harness) = sequence();
+    // Of a request for the second frame, while the first is looked at; the file is damaged where the medium
+    // decodes its grid.
+    harness.state_mut().note(failed("medium", "the grid ends in its middle"), false, Some(2));
+    let broken = |harness: &Harness<App>| harness.state().player.broken.keys().copied().collect::<Vec<_>>();
+    assert_eq!(broken(&harness), [2]);
+    // What does not read the file, what is not in the way of the picture, and a full device are no frame's fault.
+    for (name, message) in [("camera", "no"), ("march", crate::gpu::OUT_OF_MEMORY)] {
+        harness.state_mut().note(failed(name, message), false, Some(3));
+    }
+    assert_eq!(broken(&harness), [2]);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("Frame 2 failed").is_none());
+    let asked = |harness: &Harness<App>| harness.state().asked.as_ref().unwrap().frame();
+    assert_eq!(asked(&harness), Some(1));
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::ArrowRight);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Frame 2 failed").is_some());
+    assert!(harness.query_by_label("medium: the grid ends in its middle").is_some());
+    assert_eq!(asked(&harness), Some(1));
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::ArrowRight);
+    harness.run_steps(3);
+    assert_eq!(asked(&harness), Some(3));
+    assert!(harness.query_by_label("Frame 2 failed").is_none());
+    // An edit may mend it, and so may the file: it is tried again.
+    let context = harness.ctx.clone();
+    harness.state_mut().perform(&context, Action::Retry);
+    harness.run_steps(2);
+    assert_eq!(broken(&harness), [] as [i64; 0]);
+}
+
+#[test]
+fn a_slice_plane_is_asked_for_and_is_not_in_the_graph() {
+    let (_folder, mut harness) = sequence();
+    let before = harness.state().document().clone();
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num3);
+    harness.run_steps(3);
+    assert!(harness.query_by_label("Slice field").is_some());
+    let number = harness.state().asked.as_ref().unwrap().number();
+    let asked = |harness: &Harness<App>| harness.state().asked.as_ref().unwrap().slice().cloned();
+    assert_eq!(asked(&harness).unwrap().1.to_string(), "medium.medium -> slice plane.medium");
+    harness.get_by_label("Slice across x").click();
+    harness.run_steps(3);
+    assert!(harness.state().asked.as_ref().unwrap().number() > number);
+    assert_eq!(asked(&harness).unwrap().0.params["axis"], "x");
+    assert_eq!(harness.state().document(), &before);
+    assert!(!harness.state().project.is_unsaved() && !harness.state().project.can_undo());
+    assert!(!harness.state().statuses.contains_key(crate::editor::viewport::SLICE));
+    // What it says of itself is its own.
+    harness.state_mut().note(failed(crate::editor::viewport::SLICE, "no such grid"), true, Some(1));
+    harness.run_steps(2);
+    assert!(!harness.state().statuses.contains_key(crate::editor::viewport::SLICE));
 }

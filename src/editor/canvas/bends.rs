@@ -21,6 +21,9 @@ impl WireShape {
 impl Canvas {
     /// Leads a wire through the place of the pointer.
     pub(super) fn add_bend(&mut self, wire: &Wire, desk: &mut Desk) {
+        if super::edge::is_link(wire) {
+            return;
+        }
         let at = self.view.to_canvas(self.pointer).round();
         let Some(shape) = self.scene.wires.iter().find(|shape| shape.wire == *wire) else { return };
         let idx = shape.nearest_part(at);

@@ -98,7 +98,7 @@ impl Canvas {
                     self.open_name_field(name);
                 }
             }
-            Command::FrameAll => self.view.fit(self.scene.all_bounds(), size),
+            Command::FrameAll => self.fit_all(),
             Command::FrameSelected => self.view.fit(self.scene.bounds(&desk.selection.nodes), size),
             Command::Arrange => {
                 let scene = self.scene.clone();
@@ -106,8 +106,7 @@ impl Canvas {
                     |name: &str| scene.node(name).map_or([0.0; 2], |node| super::scene::size_of(node.rect));
                 desk.edit("Arrange", |document| document.layout = layered(document, size));
                 self.update(desk);
-                self.view
-                    .fit(self.scene.all_bounds(), self.screen.map_or(Vec2::ZERO, |screen| screen.size()));
+                self.fit_all();
             }
             Command::ToggleMinimap => self.hides_minimap = !self.hides_minimap,
             Command::ToggleSnap => self.snaps = !self.snaps,
@@ -240,9 +239,7 @@ impl Canvas {
 
 /// Removes a wire.
 pub(super) fn unplug(desk: &mut Desk, wire: &Wire) {
-    desk.edit("Unplug", |document| {
-        document.disconnect(wire);
-    });
+    desk.edit("Unplug", |document| super::edge::disconnect(document, wire));
 }
 
 fn copy(context: &Context, desk: &Desk) {

@@ -4,13 +4,13 @@ use egui::Align2;
 
 use super::Canvas;
 use super::desk::Desk;
+use super::edge;
 use super::gesture::{Drawing, Gesture};
 use super::node::PortLook;
 use super::paint::Brush;
-use super::scene::{NodeShape, Port, PortShape, Side};
+use super::scene::{NodeShape, Port, PortShape};
 use super::search::Purpose;
-use crate::graph::{Document, Wire};
-use crate::nodes::catalog;
+use crate::graph::{Document, Side, Wire};
 
 /// Within how many points of the screen a wire finds a port.
 pub const REACH: f32 = 14.0;
@@ -28,18 +28,22 @@ impl Drawing {
 
     /// Whether it may end there.
     fn fits(&self, fixed: &PortShape, port: &PortShape) -> bool {
+        let is_new = fixed.port.is_new() || port.port.is_new();
         port.port.side != self.fixed.side
-            && port.kind == fixed.kind
+            && (port.kind == fixed.kind || is_new)
+            && !edge::are_both(&fixed.port, &port.port)
             && !self.blocked.contains(&port.port.end.node)
     }
 
     /// Makes it a wire of the document.
     fn connect(&self, document: &mut Document, wire: Wire) -> Result<(), String> {
         let mut changed = document.clone();
-        if let Some(unplugged) = &self.unplugged {
-            changed.disconnect(unplugged);
-        }
-        changed.connect(catalog(), wire)?;
+        // A port of the group that stands for nothing would be gone before it is led elsewhere.
+        let (first, last): (Vec<&Wire>, Vec<&Wire>) =
+            self.unplugged.iter().partition(|unplugged| !edge::is_link(unplugged));
+        first.into_iter().for_each(|unplugged| edge::disconnect(&mut changed, unplugged));
+        edge::connect(&mut changed, wire)?;
+        last.into_iter().for_each(|unplugged| edge::disconnect(&mut changed, unplugged));
         *document = changed;
         Ok(())
     }
@@ -72,7 +76,7 @@ impl Canvas {
         let scene = self.scene.clone();
         let at = self.view.to_canvas(self.pointer);
         let port = scene.port_at(at, REACH / self.view.zoom).map(|port| &port.port);
-        let port = match (port, scene.node_at(at)) {
+        let port = match (port, scene.node_at(at).or_else(|| scene.edge_at(at))) {
             (Some(port), _) => port,
             (None, Some(node)) => match self.best_port(&drawing, node) {
                 Some(port) => &port.port,
@@ -87,6 +91,7 @@ impl Canvas {
             (None, None) => {
                 match drawing.unplugged {
                     Some(wire) => super::command::unplug(desk, &wire),
+                    None if drawing.fixed.is_new() => {}
                     None => self.open_search(Purpose::Connect(drawing.fixed)),
                 }
                 return;
@@ -103,15 +108,14 @@ impl Canvas {
         if let Some(reason) = scene.port(port).and_then(|port| self.misfit(&drawing, port)) {
             return self.tell(ui, reason);
         }
-        let mut done = Ok(());
-        desk.edit("Connect", |document| done = drawing.connect(document, wire));
-        if let Err(reason) = done {
+        let label = if drawing.fixed.is_new() || port.is_new() { "Add a port" } else { "Connect" };
+        if let Err(reason) = desk.wire(label, |document| drawing.connect(document, wire)) {
             self.tell(ui, reason);
         }
     }
 
     /// The wire that is being drawn, the box, and why a wire does not fit where the pointer is.
-    pub(super) fn drawing(&self, ui: &egui::Ui, brush: &Brush) {
+    pub(super) fn drawing(&self, ui: &egui::Ui, brush: &Brush, desk: &Desk) {
         match &self.gesture {
             Gesture::Box { from, .. } => {
                 let rect = egui::Rect::from_two_pos(brush.view.to_screen(*from), self.pointer);
@@ -133,8 +137,8 @@ impl Canvas {
                 let end = fits.map_or(self.pointer, |port| self.view.to_screen(port.at));
                 let points = if drawing.fixed.side == Side::Output { [start, end] } else { [end, start] };
                 brush.curve(&points, (2.5 * self.view.zoom).max(1.5), brush.theme.port(fixed.kind));
-                if let (Some(target), None) = (target, fits) {
-                    self.why_not(ui, brush, drawing, target);
+                if let Some(reason) = target.and_then(|target| self.why_not(drawing, target, desk)) {
+                    self.beside_pointer(ui, brush, &reason);
                 }
                 ui.ctx().set_cursor_icon(egui::CursorIcon::Grabbing);
             }
@@ -149,15 +153,17 @@ impl Canvas {
         (fixed != kind).then(|| format!("{} {verb} {kind}, not {fixed}", target.port.end))
     }
 
-    fn why_not(&self, ui: &egui::Ui, brush: &Brush, drawing: &Drawing, target: &PortShape) {
-        if target.port.side == drawing.fixed.side {
-            return;
-        }
-        let cycle = || format!("{} would close a cycle", target.port.end);
-        let text = self.misfit(drawing, target).unwrap_or_else(cycle);
+    /// Why the wire that is drawn may not end at a port; nothing of a port of the same side, where it cannot.
+    fn why_not(&self, drawing: &Drawing, target: &PortShape, desk: &Desk) -> Option<String> {
+        let wire = drawing.wire_to(&target.port)?;
+        let refusal = || desk.refusal(|document| drawing.connect(document, wire));
+        self.misfit(drawing, target).or_else(refusal)
+    }
+
+    fn beside_pointer(&self, ui: &egui::Ui, brush: &Brush, text: &str) {
         let at = self.pointer + egui::vec2(14.0, 18.0);
         let place = brush.painter.add(egui::Shape::Noop);
-        let rect = brush.text(at, Align2::LEFT_TOP, &text, 12.0, brush.theme.text, 360.0);
+        let rect = brush.text(at, Align2::LEFT_TOP, text, 12.0, brush.theme.text, 480.0);
         let rect = rect.expand2(egui::vec2(8.0, 5.0));
         brush.painter.set(place, egui::Shape::rect_filled(rect, 5.0, ui.visuals().window_fill));
         let edge = egui::Stroke::new(1.0, brush.theme.bad);

@@ -59,20 +59,48 @@ impl<'a> Desk<'a> {
     pub fn edit(&mut self, label: &str, change: impl FnOnce(&mut Document)) {
         let group = &self.group;
         self.project.edit(label, |document| {
-            if let Some(inside) = document.inside_mut(group) {
-                change(inside);
-            }
+            document.edit_inside(group, change);
         });
+    }
+
+    /// One step of undo that leads values anew; what it refuses is no step.
+    pub fn wire(
+        &mut self,
+        label: &str,
+        change: impl FnOnce(&mut Document) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let group = &self.group;
+        let mut done = Ok(());
+        self.project.edit(label, |document| done = document.wire_inside(group, change));
+        done
+    }
+
+    /// Why such a step would be refused.
+    pub fn refusal(&self, change: impl FnOnce(&mut Document) -> Result<(), String>) -> Option<String> {
+        self.project.document().clone().wire_inside(&self.group, change).err()
+    }
+
+    /// One step of undo of the whole graph, for what a group is seen as from outside.
+    pub fn edit_graph(&mut self, label: &str, change: impl FnOnce(&mut Document)) {
+        self.project.edit(label, change);
     }
 
     /// Part of a gesture.
     pub fn edit_during(&mut self, gesture: Id, label: &str, change: impl FnOnce(&mut Document)) {
         let group = &self.group;
         self.project.edit_during(gesture, label, |document| {
-            if let Some(inside) = document.inside_mut(group) {
-                change(inside);
-            }
+            document.edit_inside(group, change);
         });
+    }
+
+    /// The group of this name, and the group that is opened for the empty one.
+    pub fn group_path(&self, name: &str) -> String {
+        if name.is_empty() { self.group.clone() } else { path(&self.group, name) }
+    }
+
+    /// Whether the inside of a group is shown.
+    pub fn is_in_group(&self) -> bool {
+        !self.group.is_empty()
     }
 
     pub fn thumbnail(&self, name: &str) -> Option<&TextureHandle> {
@@ -103,7 +131,8 @@ pub fn path(group: &str, name: &str) -> String {
     if group.is_empty() { name.to_owned() } else { format!("{group}/{name}") }
 }
 
-fn inner_name<'a>(group: &str, path: &'a str) -> Option<&'a str> {
+/// The other way; `None` for a node of another level.
+pub fn inner_name<'a>(group: &str, path: &'a str) -> Option<&'a str> {
     let name = if group.is_empty() { path } else { path.strip_prefix(group)?.strip_prefix('/')? };
     (!name.contains('/')).then_some(name)
 }

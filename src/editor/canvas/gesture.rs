@@ -10,9 +10,10 @@ use indexmap::IndexSet;
 
 use super::Canvas;
 use super::desk::Desk;
+use super::edge;
 use super::paint::GRID;
-use super::scene::{Port, Side};
-use crate::graph::{Document, Wire};
+use super::scene::Port;
+use crate::graph::{Document, Side, Wire};
 use crate::nodes::catalog;
 
 /// What goes on.
@@ -49,7 +50,7 @@ pub enum Gesture {
 #[derive(Debug)]
 pub struct Drawing {
     pub fixed: Port,
-    /// The wire of the document that it was, if it was pulled off an input.
+    /// The wire that it was, of the document or to a port of the opened group, if it was pulled off an input.
     pub unplugged: Option<Wire>,
     /// Whether it ends with the release of the button, or with the next click.
     pub is_held: bool,
@@ -64,7 +65,9 @@ impl Gesture {
             Self::Move { starts, .. } => starts.iter().all(|(name, _)| document.nodes.contains_key(name)),
             Self::Resize { frame, .. } => *frame < document.frames.len(),
             Self::Bend { wire, idx } => document.bends.get(wire).is_some_and(|bends| *idx < bends.len()),
-            Self::Connect(drawing) => document.nodes.contains_key(&drawing.fixed.end.node),
+            Self::Connect(drawing) => {
+                drawing.fixed.of_opened().is_some() || document.nodes.contains_key(&drawing.fixed.end.node)
+            }
             _ => true,
         }
     }
@@ -74,7 +77,10 @@ impl Drawing {
     pub fn new(document: &Document, port: &Port) -> Self {
         let wires = document.wires.iter().rev();
         let unplugged = match port.side {
-            Side::Input => wires.into_iter().find(|wire| wire.to == port.end).cloned(),
+            Side::Input => {
+                let wire = wires.into_iter().find(|wire| wire.to == port.end).cloned();
+                wire.or_else(|| edge::link_to(document, &port.end))
+            }
             Side::Output => None,
         };
         let fixed = match &unplugged {
@@ -101,6 +107,7 @@ impl Canvas {
         let focused = ui.memory(|memory| memory.focused());
         let in_nodes =
             focused.is_some_and(|id| self.scene.nodes.iter().any(|node| Self::node_id(&node.name) == id));
+        self.is_focused = in_nodes;
         let is_busy = self.search.is_some() || self.name_field.is_some();
         self.has_keys = (is_over || in_nodes) && !is_busy && !ui.ctx().text_edit_focused();
         if let Some(at) = ui.input(|input| input.pointer.interact_pos()) {
@@ -238,7 +245,8 @@ impl Canvas {
             return None;
         }
         let reach = node.rect.height() / 2.0;
-        Some(self.scene.wire_at(node.rect.center(), reach)?.wire.clone())
+        let wire = &self.scene.wire_at(node.rect.center(), reach)?.wire;
+        (!edge::is_link(wire)).then(|| wire.clone())
     }
 
     fn drop_on_wire(&mut self, starts: &[(String, Vec2)], desk: &mut Desk) {

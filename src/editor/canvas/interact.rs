@@ -7,6 +7,7 @@ use super::gesture::{Drawing, Gesture};
 use super::node::{self, NEAR_PORTS, NodeLook};
 use super::paint::{Brush, WireLook};
 use super::scene::{HEADER, NodeShape, PortShape};
+use super::told::{reasons, state_text};
 use super::{Canvas, Chosen, Request};
 use crate::graph::Wire;
 
@@ -154,7 +155,7 @@ impl Canvas {
         let picture = desk.thumbnail(&shape.name).map(egui::TextureHandle::id);
         brush.node(shape, status, look, picture);
         if matches!(status.state, super::super::NodeState::Running) {
-            ui.ctx().request_repaint_after(std::time::Duration::from_millis(50));
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(500));
         }
         for (port, look) in shape.ports.iter().zip(looks) {
             let is_faint = shape.mute && look == node::PortLook::Plain;
@@ -164,7 +165,7 @@ impl Canvas {
             }
         }
         let tips =
-            [(brush.state_rect(shape), node::state_text(status)), (brush.badge_rect(shape), tip(status))];
+            [(brush.state_rect(shape), state_text(status)), (brush.badge_rect(shape), reasons(status))];
         for ((rect, text), what) in tips.into_iter().zip(["state", "left out"]) {
             let is_badge = what == "left out";
             if brush.view.zoom < NEAR_PORTS || (is_badge && text.is_empty()) {
@@ -233,7 +234,7 @@ impl Canvas {
         self.gesture = Gesture::Move { starts, frame: None, from: self.view.to_canvas(press) };
     }
 
-    fn port(&mut self, ui: &egui::Ui, brush: &Brush, shape: &PortShape, desk: &mut Desk) {
+    pub(super) fn port(&mut self, ui: &egui::Ui, brush: &Brush, shape: &PortShape, desk: &mut Desk) {
         let at = brush.view.to_screen(shape.at);
         let rect = Rect::from_center_size(at, Vec2::splat((16.0 * brush.view.zoom).max(8.0)));
         let id = Id::new(("canvas port", &shape.port));
@@ -248,8 +249,17 @@ impl Canvas {
             drawing.is_held = false;
             self.gesture = Gesture::Connect(drawing);
         }
+        // What is no group's and in none has nothing to be asked.
+        let is_plain =
+            !desk.is_in_group() && !self.scene.node(&shape.port.end.node).is_some_and(|node| node.is_group);
+        if !is_plain && !shape.port.is_new() {
+            response.context_menu(|ui| self.port_menu(ui, shape, desk));
+        }
         if matches!(self.gesture, Gesture::None) {
             response.on_hover_ui(|ui| {
+                if shape.port.is_new() {
+                    return drop(ui.label(&shape.doc));
+                }
                 let kind = shape.kind.map_or("unknown".to_owned(), |kind| kind.to_string());
                 let many = if shape.many { ", many wires" } else { "" };
                 ui.strong(format!("{}: {kind}{many}", shape.port.end.port));
@@ -257,10 +267,4 @@ impl Canvas {
             });
         }
     }
-}
-
-/// What was left out of a node's run, and why.
-fn tip(status: &super::super::NodeStatus) -> String {
-    let line = |decision: &crate::graph::Decision| format!("{}: {}", decision.what, decision.reason);
-    node::left_out(status).map(line).collect::<Vec<_>>().join("\n")
 }

@@ -13,6 +13,7 @@ mod bends;
 mod command;
 mod connect;
 mod desk;
+mod edge;
 mod field;
 mod frames;
 mod gesture;
@@ -26,12 +27,13 @@ mod scene;
 mod search;
 mod theme;
 mod toast;
+mod told;
 mod view;
 
 use std::collections::{HashMap, HashSet};
 use std::rc::Rc;
 
-use egui::{Pos2, Rect, Sense, TextureHandle};
+use egui::{Pos2, Rect, Sense, TextureHandle, Vec2};
 
 use super::{Project, Selection, Statuses};
 use crate::graph::{Document, Wire};
@@ -52,6 +54,8 @@ pub use command::Command;
 #[derive(Debug, Default)]
 pub struct Canvas {
     view: View,
+    /// The view as everything was fitted into it, which goes on until the user changes it.
+    fitted: Option<View>,
     /// Where it is on the screen; nothing before it was shown.
     screen: Option<Rect>,
     scene: Rc<Scene>,
@@ -65,6 +69,8 @@ pub struct Canvas {
     /// The group to be shown from the next frame on.
     next_group: Option<String>,
     entered: bool,
+    /// The node to be brought into view, by its name in the opened group.
+    reveal_next: Option<String>,
     search: Option<Search>,
     name_field: Option<NameField>,
     toast: Option<Toast>,
@@ -72,6 +78,8 @@ pub struct Canvas {
     /// Where the pointer was last, on the screen.
     pointer: Pos2,
     has_keys: bool,
+    /// Whether a node has the keyboard.
+    is_focused: bool,
     /// Gets the keyboard when it is drawn: what is no widget yet must not have it.
     focus_next: Option<String>,
     /// Whether it was last scrolled by a trackpad.
@@ -81,6 +89,7 @@ pub struct Canvas {
     /// Whether the pointer dragged while the space bar is held.
     space_dragged: bool,
     hides_minimap: bool,
+    minimap_corner: minimap::Corner,
     snaps: bool,
 }
 
@@ -89,7 +98,7 @@ pub struct Canvas {
 pub enum Request {
     /// To show this node's picture.
     Show(String),
-    /// To bring the keyboard to this node's parameters.
+    /// To bring this node into view, and the keyboard to its parameters.
     Inspect(String),
     /// To write this group to a file of its own, as a preset.
     SavePreset(String),
@@ -108,7 +117,9 @@ enum Chosen {
 impl Chosen {
     fn is_in(&self, document: &Document) -> bool {
         match self {
-            Self::Wire(wire) => document.wires.contains(wire),
+            Self::Wire(wire) => {
+                document.wires.contains(wire) || edge::links(document).any(|link| link == *wire)
+            }
             Self::Bend(wire, at) => document.bends.get(wire).is_some_and(|bends| *at < bends.len()),
             Self::Frame(at) => *at < document.frames.len(),
         }
@@ -129,13 +140,7 @@ impl Canvas {
         let mut desk = Desk::new(project, selection, statuses, thumbnails, &self.group);
         let screen = ui.available_rect_before_wrap();
         let back = ui.allocate_rect(screen, Sense::click_and_drag());
-        let is_first = self.screen.is_none() || std::mem::take(&mut self.entered);
-        self.screen = Some(screen);
-        self.view.origin = screen.min;
-        self.update(&desk);
-        if is_first {
-            self.view.fit(self.scene.all_bounds(), screen.size());
-        }
+        self.place(screen, &desk);
         self.watch(ui, &back);
         self.keys(ui, &mut desk);
         for command in std::mem::take(&mut self.commands) {
@@ -153,8 +158,9 @@ impl Canvas {
         self.behind(ui, &brush, &back, &mut desk);
         self.frames(ui, &brush, &mut desk);
         self.wires(ui, &brush, &mut desk);
+        self.edges(ui, &brush, &mut desk);
         self.nodes(ui, &brush, &mut desk);
-        self.drawing(ui, &brush);
+        self.drawing(ui, &brush, &desk);
         if desk.document().nodes.is_empty() {
             let text = "Tab adds a node";
             brush.text(screen.center(), egui::Align2::CENTER_CENTER, text, 16.0, theme.weak, 400.0);
@@ -171,6 +177,18 @@ impl Canvas {
         desk.close(&self.group)
     }
 
+    /// The group whose inside is shown, `outer/inner`; empty for the graph itself.
+    pub fn group(&self) -> &str {
+        &self.group
+    }
+
+    /// Brings a node into view from the next frame on, in its group.
+    pub fn reveal(&mut self, path: &str) {
+        let (group, name) = path.rsplit_once('/').unwrap_or(("", path));
+        self.next_group = Some(group.to_owned());
+        self.reveal_next = Some(name.to_owned());
+    }
+
     /// To be done in the next frame.
     pub fn ask(&mut self, command: Command) {
         self.commands.push(command);
@@ -181,6 +199,45 @@ impl Canvas {
         self.has_keys
     }
 
+    /// Takes its place on the screen, and shows there what it is to show: all of what was entered, and still all
+    /// while nobody has panned or zoomed, whatever becomes of the panel and of the pictures in the nodes.
+    fn place(&mut self, screen: Rect, desk: &Desk) {
+        let is_fitted = self.fitted == Some(self.view) && matches!(self.gesture, Gesture::None);
+        let is_first = self.screen.is_none() || std::mem::take(&mut self.entered);
+        let is_resized = self.screen != Some(screen);
+        self.screen = Some(screen);
+        self.view.origin = screen.min;
+        let n_pictured = self.n_pictured();
+        self.update(desk);
+        if is_first || is_fitted && (is_resized || self.n_pictured() != n_pictured) {
+            self.fit_all();
+        }
+        if let Some(node) = self.reveal_next.take().and_then(|name| self.scene.node(&name)) {
+            self.view.come_near(node.rect, screen.size());
+        }
+    }
+
+    fn n_pictured(&self) -> usize {
+        self.scene_of.as_ref().map_or(0, |(_, pictured)| pictured.len())
+    }
+
+    fn fit_all(&mut self) {
+        self.view.fit(self.scene.all_bounds(), self.screen.map_or(Vec2::ZERO, |screen| screen.size()));
+        self.fitted = Some(self.view);
+    }
+
+    /// Whether a node has the keyboard.
+    pub fn is_focused(&self) -> bool {
+        self.is_focused
+    }
+
+    /// Brings the keyboard to the selected node, or to the first.
+    pub fn take_keyboard(&mut self, selection: &Selection) {
+        let inner = selection.active().and_then(|path| desk::inner_name(&self.group, path));
+        let first = || self.scene.nodes.first().map(|node| node.name.as_str());
+        self.focus_next = inner.or_else(first).map(str::to_owned);
+    }
+
     /// Makes the scene anew where the document is another, and forgets what is no more.
     fn update(&mut self, desk: &Desk) {
         let document = desk.document();
@@ -189,7 +246,8 @@ impl Canvas {
         if self.scene_of.as_ref() == Some(&made_of) {
             return;
         }
-        self.scene = Rc::new(Scene::new(document, catalog(), &made_of.1));
+        let scene = Scene::new(document, catalog(), &made_of.1);
+        self.scene = Rc::new(if desk.is_in_group() { scene.with_edges(document) } else { scene });
         self.scene_of = Some(made_of);
         self.chosen.take_if(|chosen| !chosen.is_in(document));
         if !self.gesture.holds(document) {

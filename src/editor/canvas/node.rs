@@ -1,13 +1,16 @@
 //! What a node looks like: header, ports, state, cost, what was left out.
 //!
-//! From near it shows everything; below half size the labels of ports go, below a third only its name is
-//! left, over the whole of it. Tested by the texts of cost and state.
+//! From near it shows everything; below half size the labels of ports go; below a third its name, its state and
+//! its time are left, over the whole of it. Text of the foot stays as large as can be read while its row has the
+//! room, and says less where there is less. Tested by what is said at each zoom (`told`) and by pictures.
 
 use egui::{Align2, Color32, CornerRadius, Pos2, Rect, Shape, Stroke, StrokeKind, Vec2, pos2, vec2};
 
 use super::super::{NodeState, NodeStatus};
 use super::paint::Brush;
-use super::scene::{FOOTER, NodeShape, PortShape, ROW, Side, THUMBNAIL};
+use super::scene::{FOOTER, NodeShape, PortShape, ROW, THUMBNAIL};
+use super::told::{foot, left_out};
+use crate::graph::Side;
 
 /// How a node is drawn besides what it tells.
 #[derive(Debug, Clone, Copy, Default)]
@@ -78,28 +81,20 @@ impl Brush<'_> {
         let inset = 10.0 * zoom;
         let state = self.state_rect(node);
         if zoom < NEAR_NAMES {
-            let width = rect.width() - 4.0;
-            self.text(
-                rect.center(),
-                Align2::CENTER_CENTER,
-                &node.name,
-                (30.0 * zoom).clamp(8.0, 11.0),
-                white,
-                width,
-            );
-            return;
+            return self.head_alone(node, status, look, white);
         }
         // From afar there is no room for a second line, and the name has the header to itself.
         let has_type = node.type_id != node.name && zoom > NEAR_TYPES;
-        let line = if has_type { super::scene::HEADER * zoom } else { head.height() };
+        let type_size = (10.5 * zoom).max(8.0);
+        let line = if has_type { head.height() - type_size - 3.0 * zoom } else { head.height() };
         let size = (13.0 * zoom).max((11.0_f32).min(line - 4.0));
         let width = state.left() - head.left() - 1.5 * inset;
         let middle = pos2(head.left() + inset, head.top() + line / 2.0);
         self.text(middle, Align2::LEFT_CENTER, &node.name, size, white, width);
         if has_type {
-            let at = pos2(head.left() + inset, head.bottom() - 5.0 * zoom);
+            let at = pos2(head.left() + inset, head.bottom() - 3.0 * zoom);
             let faint = Color32::from_white_alpha(200).gamma_multiply(opacity);
-            self.text(at, Align2::LEFT_BOTTOM, &node.type_id, 10.5 * zoom, faint, head.width() - 2.0 * inset);
+            self.text(at, Align2::LEFT_BOTTOM, &node.type_id, type_size, faint, head.width() - 2.0 * inset);
         }
         self.state(state, status, look.time);
         if let Some(picture) = picture {
@@ -109,26 +104,66 @@ impl Brush<'_> {
             let uv = Rect::from_min_max(Pos2::ZERO, pos2(1.0, 1.0));
             self.painter.image(picture, place, uv, Color32::WHITE.gamma_multiply(opacity));
         }
-        let foot = pos2(rect.left() + inset, rect.bottom() - FOOTER * 0.5 * zoom);
-        let weak = self.theme.weak.gamma_multiply(opacity);
-        let silent = [(node.mute, "muted"), (node.bypass, "bypassed")].into_iter().find(|(is, _)| *is);
-        let (text, color) =
-            silent.map_or((cost(status), weak), |(_, word)| (word.to_owned(), self.theme.stale));
-        self.text(foot, Align2::LEFT_CENTER, &text, 10.5 * zoom, color, rect.width() * 0.62);
+        self.foot(node, status, opacity);
         if node.bypass && !node.mute {
             self.through(node);
         }
-        let n_left_out = left_out(status).count();
-        if n_left_out > 0 && zoom > NEAR_TYPES {
-            let badge = self.badge_rect(node);
-            self.painter.rect_filled(
-                badge,
-                badge.height() / 2.0,
-                self.theme.weak.gamma_multiply(0.22 * opacity),
-            );
-            let text = format!("{n_left_out} left out");
-            self.text(badge.center(), Align2::CENTER_CENTER, &text, 10.0 * zoom, weak, badge.width());
+    }
+
+    /// Its name, and below that its time where there is room for it.
+    fn head_alone(&self, node: &NodeShape, status: &NodeStatus, look: NodeLook, color: Color32) {
+        let zoom = self.view.zoom;
+        let rect = self.view.rect_to_screen(node.rect);
+        let size = (30.0 * zoom).clamp(8.0, 11.0);
+        let width = rect.width() - 4.0;
+        let text = foot(status).pop().filter(|_| rect.height() > 2.6 * size).unwrap_or_default();
+        let shift = if text.is_empty() { 0.0 } else { 0.6 * size };
+        let [above, below] = [-shift, shift].map(|dy| rect.center() + vec2(0.0, dy));
+        self.text(above, Align2::CENTER_CENTER, &node.name, size, color, width);
+        let faint = color.gamma_multiply(0.8);
+        self.text(below, Align2::CENTER_CENTER, &text, (size - 1.0).max(7.0), faint, width);
+        if rect.width() > 24.0 {
+            let disk = Rect::from_center_size(rect.right_top() + vec2(-5.5, 5.5), Vec2::splat(8.0));
+            self.state(disk, status, look.time);
         }
+    }
+
+    /// State, cost, and how much was left out.
+    fn foot(&self, node: &NodeShape, status: &NodeStatus, opacity: f32) {
+        let zoom = self.view.zoom;
+        let rect = self.view.rect_to_screen(node.rect);
+        let row = Rect::from_min_max(pos2(rect.left(), rect.bottom() - FOOTER * zoom), rect.max);
+        let row = row.shrink2(vec2(8.0 * zoom, 0.0));
+        let size = (10.5 * zoom).max(LEGIBLE.min(0.82 * row.height()));
+        let weak = self.theme.weak.gamma_multiply(opacity);
+        let mut width = row.width();
+        let n_left_out = left_out(status).count();
+        if n_left_out > 0 {
+            let badge = self.badge_rect(node);
+            let faint = self.theme.weak.gamma_multiply(0.22 * opacity);
+            self.painter.rect_filled(badge, badge.height() / 2.0, faint);
+            let long = format!("{n_left_out} left out");
+            let texts = [long, format!("−{n_left_out}")];
+            self.first_that_fits(
+                badge.center(),
+                Align2::CENTER_CENTER,
+                &texts,
+                size - 0.5,
+                weak,
+                badge.width() - 4.0,
+            );
+            width = badge.left() - row.left() - 4.0;
+        }
+        let silent = [(node.mute, "muted"), (node.bypass, "bypassed")].into_iter().find(|(is, _)| *is);
+        let color = match &status.state {
+            _ if silent.is_some() => self.theme.stale,
+            NodeState::Failed(_) | NodeState::Skipped(_) => self.theme.bad,
+            NodeState::Stale => self.theme.stale,
+            NodeState::Running => self.theme.accent,
+            _ => weak,
+        };
+        let texts = silent.map_or_else(|| foot(status), |(_, word)| vec![word.to_owned()]);
+        self.first_that_fits(row.left_center(), Align2::LEFT_CENTER, &texts, size, color, width);
     }
 
     /// A line from the first input to the first output of its type, as the value goes.
@@ -168,11 +203,14 @@ impl Brush<'_> {
         Rect::from_center_size(at, Vec2::splat(14.0 * self.view.zoom))
     }
 
-    /// Where it stands how much was left out, on the screen.
+    /// Where it stands how much was left out, on the screen: in words from near, else as a number.
     pub fn badge_rect(&self, node: &NodeShape) -> Rect {
         let rect = self.view.rect_to_screen(node.rect);
-        let size = vec2(60.0, 15.0) * self.view.zoom;
-        Rect::from_min_size(rect.right_bottom() - vec2(66.0, 17.5) * self.view.zoom, size)
+        let zoom = self.view.zoom;
+        let width = if zoom > NEAR_WORDS { 60.0 * zoom } else { (34.0 * zoom).max(16.0) };
+        let height = 15.0 * zoom;
+        let corner = rect.right_bottom() - vec2(6.0, 2.5) * zoom;
+        Rect::from_min_size(corner - vec2(width, height), vec2(width, height))
     }
 
     fn state(&self, rect: Rect, status: &NodeStatus, time: f64) {
@@ -249,69 +287,11 @@ impl Brush<'_> {
     }
 }
 
-/// Zooms from which names, ports, their labels, and types and badges are drawn.
+/// Zooms from which names, ports, their labels, types, and words of badges are drawn.
 const NEAR_NAMES: f32 = 0.34;
 pub const NEAR_PORTS: f32 = 0.22;
 const NEAR_LABELS: f32 = 0.42;
-const NEAR_TYPES: f32 = 0.57;
-
-/// "12 ms · 3.4 MiB"; nothing of what never ran.
-pub fn cost(status: &NodeStatus) -> String {
-    let ms = if status.gpu_ms > 0.0 { status.gpu_ms.max(status.cpu_ms) } else { status.cpu_ms };
-    let time = match ms {
-        ms if ms <= 0.0 => String::new(),
-        ms if ms < 10.0 => format!("{ms:.1} ms"),
-        ms if ms < 1000.0 => format!("{ms:.0} ms"),
-        ms => format!("{:.1} s", ms / 1000.0),
-    };
-    let mut parts = vec![time];
-    if status.bytes > 0 {
-        parts.push(memory(status.bytes));
-    }
-    parts.retain(|part| !part.is_empty());
-    parts.join(" · ")
-}
-
-fn memory(bytes: u64) -> String {
-    let units = ["B", "KiB", "MiB", "GiB", "TiB"];
-    let (mut size, mut unit) = (bytes as f64, 0);
-    while size >= 1000.0 && unit + 1 < units.len() {
-        (size, unit) = (size / 1024.0, unit + 1);
-    }
-    let digits = usize::from(unit > 0 && size < 10.0);
-    format!("{size:.digits$} {}", units[unit])
-}
-
-/// What the scene did not require.
-pub fn left_out(status: &NodeStatus) -> impl Iterator<Item = &crate::graph::Decision> {
-    status.report.decisions.iter().filter(|decision| !decision.kept)
-}
-
-/// The state in words.
-pub fn state_text(status: &NodeStatus) -> String {
-    match &status.state {
-        NodeState::Idle => "idle: nothing that is shown needs it".to_owned(),
-        NodeState::Stale => "stale: something that it depends on changed".to_owned(),
-        NodeState::Running => "running".to_owned(),
-        NodeState::Done if status.cached => "done, from the cache".to_owned(),
-        NodeState::Done => "done".to_owned(),
-        NodeState::Failed(message) => format!("failed: {message}"),
-        NodeState::Skipped(because) => format!("skipped, because {because} failed"),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn costs_read_well() {
-        let of = |cpu_ms, gpu_ms, bytes| cost(&NodeStatus { cpu_ms, gpu_ms, bytes, ..NodeStatus::default() });
-        assert_eq!(of(12.3, 0.0, 3_565_158), "12 ms · 3.4 MiB");
-        assert_eq!(of(0.0, 0.0, 0), "");
-        assert_eq!(of(0.25, 0.0, 0), "0.2 ms");
-        assert_eq!(of(2.0, 4321.0, 0), "4.3 s");
-        assert_eq!(of(0.0, 0.0, 999), "999 B");
-        assert_eq!(of(0.0, 0.0, 123 << 30), "123 GiB");
-    }
-}
+const NEAR_TYPES: f32 = 0.5;
+const NEAR_WORDS: f32 = 0.75;
+/// Points of the screen that text of the foot has at least, where its row is high enough.
+const LEGIBLE: f32 = 9.0;

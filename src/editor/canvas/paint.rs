@@ -38,6 +38,25 @@ impl Brush<'_> {
         rect
     }
 
+    /// The first of several texts that has room in a width; the last, cut, where none has.
+    pub fn first_that_fits(
+        &self,
+        at: Pos2,
+        align: Align2,
+        texts: &[String],
+        size: f32,
+        color: Color32,
+        width: f32,
+    ) {
+        let font = FontId::proportional((size * 2.0).round() / 2.0);
+        let has_room = |text: &&String| {
+            self.painter.layout_no_wrap((*text).clone(), font.clone(), color).size().x <= width
+        };
+        if let Some(text) = texts.iter().find(has_room).or(texts.last()) {
+            self.text(at, align, text, size, color, width);
+        }
+    }
+
     /// Dots, farther apart when seen from afar.
     pub fn grid(&self, screen: Rect) {
         let mut step = GRID * self.view.zoom;

@@ -9,8 +9,9 @@ use std::collections::{HashMap, HashSet};
 
 use egui::{Pos2, Rect, Vec2, pos2, vec2};
 
+use super::edge;
 use crate::graph::layout::layered;
-use crate::graph::{Catalog, Category, Document, End, Node, PortSpec, PortType, Wire};
+use crate::graph::{Catalog, Category, Document, End, Node, PortSpec, PortType, Side, Wire};
 
 pub const WIDTH: f32 = 184.0;
 /// Of a header; of the second line in it that tells the type of a node that has another name.
@@ -19,12 +20,14 @@ pub const SUBTITLE: f32 = 15.0;
 pub const ROW: f32 = 20.0;
 pub const FOOTER: f32 = 20.0;
 pub const THUMBNAIL: f32 = 92.0;
-const PAD: f32 = 5.0;
+pub const PAD: f32 = 5.0;
 
 /// The canvas' points of everything.
 #[derive(Debug, Default)]
 pub struct Scene {
     pub nodes: Vec<NodeShape>,
+    /// Inside of a group, the panels of its ports.
+    pub edges: Vec<NodeShape>,
     pub wires: Vec<WireShape>,
     by_name: HashMap<String, usize>,
 }
@@ -64,12 +67,6 @@ pub struct Port {
     pub side: Side,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Side {
-    Input,
-    Output,
-}
-
 /// A wire.
 #[derive(Debug)]
 pub struct WireShape {
@@ -80,13 +77,13 @@ pub struct WireShape {
 }
 
 impl Port {
-    /// "input march.medium", for AccessKit.
+    /// "input march.medium", "group input lights" or "new group input", for AccessKit.
     pub fn label(&self) -> String {
-        let side = match self.side {
-            Side::Input => "input",
-            Side::Output => "output",
-        };
-        format!("{side} {}", self.end)
+        match self.of_opened() {
+            Some((side, "")) => format!("new group {side}"),
+            Some((side, port)) => format!("group {side} {port}"),
+            None => format!("{} {}", self.side, self.end),
+        }
     }
 }
 
@@ -120,9 +117,8 @@ impl Scene {
                 is_group: node.inside.is_some(),
                 mute: node.mute,
                 bypass: node.bypass,
-                rect: Rect::ZERO,
                 header: if node.type_id == *name { HEADER } else { HEADER + SUBTITLE },
-                ports: Vec::new(),
+                ..NodeShape::default()
             };
             shape.ports = ports(&shape, node, catalog, wires);
             let rows = [Side::Input, Side::Output].map(|side| shape.side(side).count());
@@ -132,11 +128,25 @@ impl Scene {
             nodes.push(shape);
         }
         let by_name = nodes.iter().enumerate().map(|(idx, node)| (node.name.clone(), idx)).collect();
-        let mut scene = Self { nodes, wires: Vec::new(), by_name };
+        let mut scene = Self { nodes, by_name, ..Self::default() };
         scene.place(document);
         let bends = |wire| document.bends.get(wire).map_or(&[][..], Vec::as_slice);
         scene.wires = document.wires.iter().filter_map(|wire| scene.wire(wire, bends(wire))).collect();
         scene
+    }
+
+    /// With the ports of the group that the document is the inside of.
+    pub fn with_edges(mut self, document: &Document) -> Self {
+        self.edges = edge::panels(document, self.all_bounds());
+        for link in edge::links(document) {
+            let Some(shape) = self.wire(&link, &[]) else { continue };
+            self.wires.push(shape);
+            let ends =
+                [Port { end: link.from, side: Side::Output }, Port { end: link.to, side: Side::Input }];
+            let ports = self.nodes.iter_mut().flat_map(|node| &mut node.ports);
+            ports.filter(|port| ends.contains(&port.port)).for_each(|port| port.is_wired = true);
+        }
+        self
     }
 
     pub fn node(&self, name: &str) -> Option<&NodeShape> {
@@ -144,7 +154,8 @@ impl Scene {
     }
 
     pub fn port(&self, port: &Port) -> Option<&PortShape> {
-        self.node(&port.end.node)?.port(port)
+        let edge = || self.edges.iter().find(|edge| edge.name == port.end.node);
+        self.node(&port.end.node).or_else(edge)?.port(port)
     }
 
     /// What all nodes, or those of these names, cover; nothing for none.
@@ -154,7 +165,7 @@ impl Scene {
     }
 
     pub fn all_bounds(&self) -> Rect {
-        self.nodes.iter().map(|node| node.rect).fold(Rect::NOTHING, Rect::union)
+        self.nodes.iter().chain(&self.edges).map(|node| node.rect).fold(Rect::NOTHING, Rect::union)
     }
 
     /// Where every node stands, for a document that is to keep it.
@@ -166,9 +177,14 @@ impl Scene {
         self.nodes.iter().rev().find(|node| node.rect.contains(point))
     }
 
+    pub fn edge_at(&self, point: Pos2) -> Option<&NodeShape> {
+        self.edges.iter().find(|edge| edge.rect.contains(point))
+    }
+
     /// The port nearest to a point, within `reach`.
     pub fn port_at(&self, point: Pos2, reach: f32) -> Option<&PortShape> {
-        let ports = self.nodes.iter().filter(|node| node.rect.expand(reach).contains(point));
+        let all = self.nodes.iter().chain(&self.edges);
+        let ports = all.filter(|node| node.rect.expand(reach).contains(point));
         let ports = ports.flat_map(|node| &node.ports);
         let near = ports.map(|port| (port.at.distance(point), port)).filter(|(far, _)| *far <= reach);
         near.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, port)| port)
@@ -232,6 +248,22 @@ impl Scene {
 
 pub fn size_of(rect: Rect) -> [f64; 2] {
     [rect.width(), rect.height()].map(f64::from)
+}
+
+impl Default for NodeShape {
+    fn default() -> Self {
+        Self {
+            name: String::new(),
+            type_id: String::new(),
+            category: None,
+            is_group: false,
+            mute: false,
+            bypass: false,
+            rect: Rect::ZERO,
+            header: HEADER,
+            ports: Vec::new(),
+        }
+    }
 }
 
 /// Ports of a node at the origin: those of its kind, then those that only wires name.

@@ -8,8 +8,9 @@ use egui::{Area, Frame, Id, Key, Modifiers, Order, Pos2, RichText, ScrollArea, T
 
 use super::Canvas;
 use super::desk::Desk;
-use super::scene::{Port, Side, WIDTH};
-use crate::graph::{Document, End, Node, NodeSpec, PortSpec, Wire};
+use super::edge;
+use super::scene::{Port, WIDTH};
+use crate::graph::{Document, End, Node, NodeSpec, PortSpec, Side, Wire};
 use crate::nodes::catalog;
 
 /// An open search.
@@ -66,7 +67,7 @@ impl Purpose {
                         Side::Output => (port.end.clone(), own),
                         Side::Input => (own, port.end.clone()),
                     };
-                    document.connect(catalog(), Wire { from, to })
+                    edge::connect(document, Wire { from, to })
                 }
             },
         };
@@ -76,9 +77,10 @@ impl Purpose {
 
 /// The first port of a kind that a wire from `port` may end at.
 fn matching_port(document: &Document, port: &Port, spec: &NodeSpec) -> Option<&'static PortSpec> {
-    let (kind, others) = match port.side {
-        Side::Output => (document.output(catalog(), &port.end)?.kind, spec.inputs),
-        Side::Input => (document.input(catalog(), &port.end)?.kind, spec.outputs),
+    let kind = edge::kind_of(document, port)?;
+    let others = match port.side {
+        Side::Output => spec.inputs,
+        Side::Input => spec.outputs,
     };
     others.iter().find(|other| other.kind == kind)
 }

@@ -44,13 +44,22 @@ impl View {
 
     /// All of `content` in the middle of a screen of `size`, not larger than life.
     pub fn fit(&mut self, content: Rect, size: Vec2) {
-        const MARGIN: f32 = 32.0;
+        const MARGIN: f32 = 16.0;
         if !content.is_positive() || size.min_elem() <= 2.0 * MARGIN {
             return;
         }
         let ratio = (size - Vec2::splat(2.0 * MARGIN)) / content.size();
         self.zoom = ratio.min_elem().clamp(*ZOOM.start(), 1.0);
         self.pan = size / 2.0 - content.center().to_vec2() * self.zoom;
+    }
+
+    /// Shows `rect`, as large as can be read: from afar it comes near.
+    pub fn come_near(&mut self, rect: Rect, size: Vec2) {
+        const LEGIBLE: f32 = 0.5;
+        if self.zoom < LEGIBLE {
+            self.zoom_at(self.to_screen(rect.center()), LEGIBLE / self.zoom);
+        }
+        self.reveal(rect, size);
     }
 
     /// Moves no farther than it takes to see `rect`.
@@ -122,5 +131,10 @@ mod tests {
         let before = view;
         view.reveal(far, size);
         assert_eq!(view, before);
+        view.come_near(far, size);
+        assert_eq!(view, before);
+        view.zoom = 0.1;
+        view.come_near(far, size);
+        assert!(view.zoom == 0.5 && screen.contains_rect(view.rect_to_screen(far)));
     }
 }

@@ -10,7 +10,7 @@ use egui::Ui;
 
 use super::number::{entry, named};
 use super::slot::Slot;
-use crate::graph::{Document, FileState, Moment, Params, PortType};
+use crate::graph::{Document, FileState, Moment, Params, PortType, flatten};
 use crate::nodes;
 use crate::volume::vdb::{self, MetaValue};
 
@@ -32,25 +32,32 @@ pub fn show(ui: &mut Ui, slot: &mut Slot, width: f32) -> Option<String> {
     let (id, name) = (slot.id().with("grid"), slot.name());
     let typed = entry(ui, id, &name, &current, width - 30.0, |text| slot.set(text.into(), None));
     let mut chosen = None;
-    let menu = ui.menu_button("⏷", |ui| match choices(ui, slot.document(), slot.node()) {
-        Ok(grids) => {
-            for grid in grids {
-                let text = format!("{}   {}", grid.name, grid.about);
-                if ui.selectable_label(grid.name == current, text).clicked() {
-                    chosen = Some(grid.name);
-                    ui.close();
+    let menu = ui.menu_button("⏷", |ui| {
+        let document = flatten(slot.document(), nodes::catalog());
+        match choices(ui, &document, slot.node(), slot.moment()) {
+            Ok(grids) => {
+                for grid in grids {
+                    let text = format!("{}   {}", grid.name, grid.about);
+                    if ui.selectable_label(grid.name == current, text).clicked() {
+                        chosen = Some(grid.name);
+                        ui.close();
+                    }
                 }
             }
+            Err(message) => drop(ui.weak(message)),
         }
-        Err(message) => drop(ui.weak(message)),
     });
     named(&menu.response, &format!("{name} menu"));
     let chosen = chosen.and_then(|chosen| slot.set(chosen.into(), None).err());
     typed.or(chosen)
 }
 
-fn choices(ui: &Ui, document: &Document, node: &str) -> Found {
-    let Some(path) = file(document, node)? else {
+/// The grids of the volume that a node of a document without groups reads, or why none are known.
+///
+/// # Errors
+/// Where no volume is wired, or its file cannot be read.
+pub fn choices(ui: &Ui, document: &Document, node: &str, moment: Moment) -> Found {
+    let Some(path) = file(document, node, moment)? else {
         return Ok(vec![Choice { name: "density".to_owned(), about: "shape".to_owned() }]);
     };
     let known: Known =
@@ -83,7 +90,7 @@ fn read(path: &Path) -> Found {
 }
 
 /// The file whose volume reaches a node; `None` for a shape.
-fn file(document: &Document, node: &str) -> Result<Option<PathBuf>, String> {
+fn file(document: &Document, node: &str, moment: Moment) -> Result<Option<PathBuf>, String> {
     let mut name = node;
     // A chain cannot be longer than there are nodes, unless it is a circle.
     for _ in 0..document.nodes.len() {
@@ -97,7 +104,6 @@ fn file(document: &Document, node: &str) -> Result<Option<PathBuf>, String> {
     }
     let node = document.nodes.get(name).ok_or_else(|| format!("'{name}' is not there"))?;
     let kind = nodes::kind(&node.type_id).ok_or_else(|| format!("'{name}' is of no known kind"))?;
-    let moment = Moment { frame: document.frame, is_aside: false };
     let params =
         Params::resolve(kind.spec.params, &node.params, &document.base, moment).map_err(|problems| {
             problems.into_iter().map(|problem| problem.message).collect::<Vec<_>>().join("; ")

@@ -24,6 +24,11 @@ pub fn named(response: &Response, name: &str) {
     response.ctx.accesskit_node_builder(response.id, |node| node.set_label(name));
 }
 
+/// Says what a named text is: readers know a plain label by its text and would not find the name.
+pub fn in_role(response: &Response, role: egui::accesskit::Role) {
+    response.ctx.accesskit_node_builder(response.id, |node| node.set_role(role));
+}
+
 /// A line of text that is taken over by `commit`; the reason why it was not is returned as long as it stands.
 pub fn entry(
     ui: &mut Ui,
@@ -41,8 +46,9 @@ pub fn entry(
     let mut text = draft.as_ref().map_or(current, |draft| &draft.text).to_owned();
     let is_refused = draft.as_ref().is_some_and(|draft| draft.message.is_some());
     let color = is_refused.then(|| ui.visuals().error_fg_color);
-    let edit = TextEdit::singleline(&mut text).id(id).desired_width(width).text_color_opt(color);
-    let response = ui.add(edit);
+    let edit = TextEdit::singleline(&mut text).id(id).desired_width(f32::INFINITY).text_color_opt(color);
+    // With its margins, so that what stands after it has the room that it was left.
+    let response = ui.add_sized(egui::vec2(width, ui.spacing().interact_size.y), edit);
     named(&response, name);
     if response.gained_focus() {
         select_all(ui, id, &text);
@@ -97,8 +103,7 @@ pub fn handle(ui: &mut Ui, slot: &mut Slot, part: usize, label: &str, suffix: &s
     let response = ui.add(Label::new(text).selectable(false).truncate().sense(Sense::click_and_drag()));
     let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal).on_hover_text(help(slot));
     named(&response, &format!("{}{suffix} drag", slot.name()));
-    // Readers know a label by its text and would not find the name.
-    ui.ctx().accesskit_node_builder(response.id, |node| node.set_role(egui::accesskit::Role::SpinButton));
+    in_role(&response, egui::accesskit::Role::SpinButton);
     let id = slot.id().with(("drag", part));
     if response.drag_started() {
         slot.end_gesture();
@@ -171,8 +176,7 @@ pub fn help(slot: &Slot) -> String {
         Some(json) => format!("; default {json}"),
         None => String::new(),
     };
-    let others = if slot.is_mixed() { "\nThe other selected nodes have another value." } else { "" };
-    format!("{}\n{}{default}{others}", slot.spec.doc, slot.spec.form())
+    format!("{}\n{}{default}", slot.spec.doc, slot.spec.form())
 }
 
 #[cfg(test)]

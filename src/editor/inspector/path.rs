@@ -44,7 +44,9 @@ pub fn show(ui: &mut Ui, slot: &mut Slot, width: f32) -> Option<String> {
 fn open(ui: &Ui, slot: &Slot, current: &str) {
     let full = slot.document().base.join(current);
     let folder = full.parent().filter(|folder| folder.is_dir()).map(Path::to_owned);
-    let mut dialog = FileDialog::new().title(&format!("Choose {}", slot.name()));
+    let mut dialog = FileDialog::new()
+        .title(&format!("Choose {}", slot.name()))
+        .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]);
     if let Some(folder) = folder.and_then(|folder| std::path::absolute(folder).ok()) {
         dialog = dialog.initial_directory(folder);
     }

@@ -2,40 +2,127 @@
 
 use egui::{RichText, Ui};
 
-use crate::editor::{NodeState, NodeStatus};
-use crate::graph::{Decision, Document, NodeSpec, PortSpec};
+use super::number::named;
+use crate::editor::{NodeState, NodeStatus, Project};
+use crate::graph::{Decision, Document, End, NodeSpec, PortSpec, Side, Wire};
+use crate::nodes::catalog;
 
-/// Inputs and outputs, and what they are wired to.
-pub fn ports(ui: &mut Ui, document: &Document, name: &str, spec: &NodeSpec) {
-    for port in spec.inputs {
-        let wires = document.wires.iter().filter(|wire| wire.to.node == name && wire.to.port == port.name);
-        let ends: Vec<String> = wires.map(|wire| wire.from.to_string()).collect();
-        line(ui, port, "<-", &ends, || match port.absent {
-            Some(meaning) => (format!("empty: {meaning}"), false),
-            None => (format!("empty: wire a {} to it", port.kind), true),
-        });
-    }
-    for port in spec.outputs {
-        let wires =
-            document.wires.iter().filter(|wire| wire.from.node == name && wire.from.port == port.name);
-        let ends: Vec<String> = wires.map(|wire| wire.to.to_string()).collect();
-        line(ui, port, "->", &ends, || ("read by nothing".to_owned(), false));
-    }
+/// What the menu of a port asks for.
+enum Change {
+    Connect(Wire),
+    Unplug(Wire),
+    Expose(Side, End),
 }
 
-fn line(ui: &mut Ui, port: &PortSpec, arrow: &str, ends: &[String], empty: impl Fn() -> (String, bool)) {
-    ui.horizontal_wrapped(|ui| {
-        let about = format!("{}: {}", port.kind, port.doc);
-        ui.label(RichText::new(port.name).strong()).on_hover_text(about);
-        if !ends.is_empty() {
-            ui.label(format!("{arrow} {}", ends.join(", ")));
-            return;
+/// Inputs and outputs, and what they are wired to, as links; a menu at each wires it, for those who use no mouse.
+/// Gives the node of the link that was clicked.
+pub fn ports(ui: &mut Ui, project: &mut Project, path: &str, spec: &NodeSpec) -> Option<String> {
+    let (group, name) = path.rsplit_once('/').unwrap_or(("", path));
+    let mut asked = None;
+    let mut change = None;
+    let level = project.document().inside(group)?;
+    let inputs = spec.inputs.iter().map(|port| (Side::Input, port));
+    for (side, port) in inputs.chain(spec.outputs.iter().map(|port| (Side::Output, port))) {
+        let own = End::new(name, port.name);
+        let wires: Vec<&Wire> = level.wires.iter().filter(|wire| *end_at(wire, side) == own).collect();
+        ui.horizontal_wrapped(|ui| {
+            let opened = ui.menu_button("⏷", |ui| {
+                change = menu(ui, level, !group.is_empty(), (side, &own)).or(change.take());
+            });
+            named(&opened.response, &format!("wires of {side} {own}"));
+            let about = format!("{}: {}", port.kind, port.doc);
+            ui.label(RichText::new(port.name).strong()).on_hover_text(about);
+            match level.group_port_of(side, &own) {
+                Some(port) => drop(ui.label(format!("{side} of the group: {port}"))),
+                None if wires.is_empty() => empty(ui, side, port),
+                None => {}
+            }
+            if !wires.is_empty() {
+                ui.weak(if side == Side::Input { "from" } else { "to" });
+            }
+            for wire in wires {
+                asked = link(ui, group, other_end(wire, side)).or(asked.take());
+            }
+        });
+    }
+    if let Some(change) = change {
+        apply(project, group, change);
+    }
+    asked
+}
+
+fn end_at(wire: &Wire, side: Side) -> &End {
+    if side == Side::Input { &wire.to } else { &wire.from }
+}
+
+fn other_end(wire: &Wire, side: Side) -> &End {
+    if side == Side::Input { &wire.from } else { &wire.to }
+}
+
+/// What can be done with a port: wires that fit, those that are there, and a port of the group.
+fn menu(ui: &mut Ui, level: &Document, is_in_group: bool, (side, own): (Side, &End)) -> Option<Change> {
+    let mut change = None;
+    let mut line = |ui: &mut Ui, text: String, is: Change| {
+        if ui.button(text).clicked() {
+            change = Some(is);
+            ui.close();
         }
-        match empty() {
-            (text, true) => ui.colored_label(ui.visuals().error_fg_color, text),
-            (text, false) => ui.weak(text),
-        };
+    };
+    for wire in level.wires.iter().filter(|wire| end_at(wire, side) == own) {
+        line(ui, format!("Unplug {}", other_end(wire, side)), Change::Unplug(wire.clone()));
+    }
+    for (name, node) in &level.nodes {
+        let ports = if side == Side::Input { node.outputs(catalog()) } else { node.inputs(catalog()) };
+        for port in ports.unwrap_or_default() {
+            let other = End::new(name, port.name);
+            let (from, to) =
+                if side == Side::Input { (other.clone(), own.clone()) } else { (own.clone(), other.clone()) };
+            let wire = Wire { from, to };
+            if !level.wires.contains(&wire) && level.fits(catalog(), &wire.from, &wire.to).is_ok() {
+                line(ui, format!("Connect {other}"), Change::Connect(wire));
+            }
+        }
+    }
+    if is_in_group && level.can_expose(catalog(), side, own).is_ok() {
+        line(ui, "Expose as a port of the group".to_owned(), Change::Expose(side, own.clone()));
+    }
+    change
+}
+
+fn apply(project: &mut Project, group: &str, change: Change) {
+    let label = match &change {
+        Change::Connect(_) => "Connect",
+        Change::Unplug(_) => "Unplug",
+        Change::Expose(..) => "Add a port",
+    };
+    project.edit(label, |document| {
+        // Refused is only what closes a cycle outside of the group; the wire is then not there.
+        let _ = document.wire_inside(group, |inside| match change {
+            Change::Connect(wire) => inside.connect(catalog(), wire),
+            Change::Unplug(wire) => {
+                inside.disconnect(&wire);
+                Ok(())
+            }
+            Change::Expose(side, end) => inside.expose(catalog(), side, &end).map(drop),
+        });
     });
+}
+
+/// A link to the node at the other end of a wire, as `group/inner`.
+pub fn link(ui: &mut Ui, group: &str, end: &End) -> Option<String> {
+    let response = ui.link(end.to_string()).on_hover_text("Go to this node");
+    let path = if group.is_empty() { end.node.clone() } else { format!("{group}/{}", end.node) };
+    response.clicked().then_some(path)
+}
+
+fn empty(ui: &mut Ui, side: Side, port: &PortSpec) {
+    match (side, port.absent) {
+        (Side::Input, Some(meaning)) => drop(ui.weak(format!("empty: {meaning}"))),
+        (Side::Input, None) => {
+            drop(ui.colored_label(ui.visuals().error_fg_color, format!("empty: wire a {} to it", port.kind)));
+        }
+        (Side::Output, _) => drop(ui.weak("read by nothing")),
+    }
 }
 
 /// State, cost and decisions of the last run.

@@ -5,7 +5,7 @@ use egui::{
 };
 use serde_json::{Map, Value as Json};
 
-use super::number::{entry, field, handle, help, named, slider};
+use super::number::{entry, field, handle, help, in_role, named, slider};
 use super::slot::Slot;
 use super::{color, curve, direction, grids, path};
 use crate::graph::ParamKind;
@@ -72,7 +72,7 @@ fn row(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
         | ParamKind::Record(_) => {
             ui.horizontal(|ui| {
                 label(ui, slot);
-                ui.add_space((ui.available_width() - tail_width(slot)).max(0.0));
+                ui.add_space((ui.available_width() - tail_width(ui, slot)).max(0.0));
                 tail(ui, slot);
             });
             below(ui, slot)
@@ -238,10 +238,20 @@ fn choose(ui: &mut Ui, slot: &mut Slot, choices: &[Json], width: f32) -> Option<
     slot.set(chosen?, None).err()
 }
 
-/// Unit, key and reset.
+/// Whether others differ, unit, key and reset.
 fn tail(ui: &mut Ui, slot: &mut Slot) {
+    if slot.is_mixed() {
+        let text = RichText::new("mixed").small().color(ui.visuals().warn_fg_color);
+        let response = ui.label(text).on_hover_text("The other selected nodes have another value.");
+        named(&response, &format!("{} mixed", slot.name()));
+        in_role(&response, egui::accesskit::Role::Status);
+    }
     if !slot.spec.unit.is_empty() {
-        ui.weak(slot.spec.unit);
+        // Cut where the panel is too narrow for it; the rest of the line is not pushed out.
+        let room = ui.available_width() - (tail_width(ui, slot) - unit_width(ui, slot));
+        let size = vec2(unit_width(ui, slot).min(room).max(0.0), ui.spacing().interact_size.y);
+        let unit = egui::Label::new(RichText::new(slot.spec.unit).weak()).truncate();
+        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| ui.add(unit));
     }
     if slot.spec.kind.takes_keys() {
         key(ui, slot);
@@ -291,16 +301,22 @@ fn diamond(ui: &Ui, rect: Rect, is_filled: bool, is_faint: bool, is_hovered: boo
     ui.painter().add(Shape::convex_polygon(corners.to_vec(), fill, Stroke::new(1.0, color)));
 }
 
-fn tail_width(slot: &Slot) -> f32 {
+/// Of a unit in whole.
+fn unit_width(ui: &Ui, slot: &Slot) -> f32 {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    ui.painter().layout_no_wrap(slot.spec.unit.to_owned(), font, Color32::PLACEHOLDER).size().x.ceil() + 1.0
+}
+
+fn tail_width(ui: &Ui, slot: &Slot) -> f32 {
     let spacing = 8.0;
-    let unit =
-        if slot.spec.unit.is_empty() { 0.0 } else { 7.0 * slot.spec.unit.chars().count() as f32 + spacing };
+    let unit = if slot.spec.unit.is_empty() { 0.0 } else { unit_width(ui, slot) + spacing };
     let key = if slot.spec.kind.takes_keys() { BUTTON + spacing } else { 0.0 };
-    unit + key + BUTTON + spacing
+    let mixed = if slot.is_mixed() { 32.0 + spacing } else { 0.0 };
+    mixed + unit + key + BUTTON + spacing
 }
 
 fn width_before_tail(ui: &Ui, slot: &Slot) -> f32 {
-    (ui.available_width() - tail_width(slot)).max(40.0)
+    (ui.available_width() - tail_width(ui, slot)).max(56.0)
 }
 
 /// A number beside others that belong to it, as colors and directions have them.

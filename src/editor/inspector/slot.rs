@@ -20,18 +20,25 @@ pub struct Slot<'a> {
     path: Vec<&'static str>,
     /// What may be written.
     pub spec: &'static ParamSpec,
+    /// The frame that is looked at, where there are several.
+    looked_at: Option<i64>,
 }
 
 impl<'a> Slot<'a> {
     /// A parameter that is in no record.
-    pub fn new(project: &'a mut Project, nodes: &'a [String], spec: &'static ParamSpec) -> Self {
-        Self { project, nodes, path: vec![spec.name], spec }
+    pub fn new(
+        project: &'a mut Project,
+        nodes: &'a [String],
+        spec: &'static ParamSpec,
+        looked_at: Option<i64>,
+    ) -> Self {
+        Self { project, nodes, path: vec![spec.name], spec, looked_at }
     }
 
     /// A member of this record.
     pub fn member(&mut self, spec: &'static ParamSpec) -> Slot<'_> {
         let path = self.path.iter().copied().chain([spec.name]).collect();
-        Slot { project: self.project, nodes: self.nodes, path, spec }
+        Slot { project: self.project, nodes: self.nodes, path, spec, looked_at: self.looked_at }
     }
 
     /// `medium.emission.flame`, by which tests and screen readers know its control.
@@ -57,16 +64,17 @@ impl<'a> Slot<'a> {
     /// The frame that is looked at; where none is, that of the first key, whose value then holds.
     pub fn frame(&self) -> i64 {
         let first = || Some(self.keys()?.first()?[0].as_f64()? as i64);
-        self.document().frame.or_else(first).unwrap_or(0)
+        self.looked_at.or_else(first).unwrap_or(0)
     }
 
-    fn moment(&self) -> Moment {
-        Moment { frame: self.document().frame, is_aside: false }
+    /// What keys and sequences are at.
+    pub fn moment(&self) -> Moment {
+        Moment { frame: self.looked_at, is_aside: false }
     }
 
     /// What the file says.
     pub fn given(&self) -> Option<&Json> {
-        given(&self.document().nodes[&self.nodes[0]], &self.path)
+        self.given_to(&self.nodes[0])
     }
 
     /// Whether the file says anything, so that it can be reset.
@@ -74,15 +82,27 @@ impl<'a> Slot<'a> {
         self.given().is_some()
     }
 
-    /// Whether the other nodes that are edited with it have another value.
+    fn given_to(&self, name: &str) -> Option<&Json> {
+        given(self.document().node(name)?, &self.path)
+    }
+
+    /// Whether the other nodes that are edited with it have another value. A default that is written down is
+    /// the default.
     pub fn is_mixed(&self) -> bool {
-        self.nodes[1..].iter().any(|name| given(&self.document().nodes[name], &self.path) != self.given())
+        let value = |name: &String| self.json_of(self.given_to(name));
+        self.nodes[1..]
+            .iter()
+            .any(|name| self.given_to(name) != self.given() && !is_same(&value(name), &value(&self.nodes[0])))
     }
 
     /// What holds now: the given value, of keys the one of the frame, or the default.
     pub fn json(&self) -> Json {
+        self.json_of(self.given())
+    }
+
+    fn json_of(&self, given: Option<&Json>) -> Json {
         let default = || self.spec.default_json().unwrap_or_default();
-        let json = self.given().cloned().unwrap_or_else(default);
+        let json = given.cloned().unwrap_or_else(default);
         if !self.spec.kind.takes_keys() || !json.is_object() {
             return json;
         }
@@ -201,7 +221,9 @@ impl<'a> Slot<'a> {
         let (nodes, path) = (self.nodes, &self.path);
         let change = |document: &mut Document| {
             for name in nodes {
-                place(&mut document.nodes[name].params, path, value.clone());
+                if let Some(node) = document.node_mut(name) {
+                    place(&mut node.params, path, value.clone());
+                }
             }
         };
         match gesture {
@@ -213,6 +235,15 @@ impl<'a> Slot<'a> {
     /// Ends the gesture that goes on.
     pub fn end_gesture(&mut self) {
         self.project.end_gesture();
+    }
+}
+
+/// Whether two values are one: 1 and 1.0 are.
+fn is_same(a: &Json, b: &Json) -> bool {
+    match (a, b) {
+        (Json::Number(a), Json::Number(b)) => a.as_f64() == b.as_f64(),
+        (Json::Array(a), Json::Array(b)) => a.len() == b.len() && a.iter().zip(b).all(|(a, b)| is_same(a, b)),
+        _ => a == b,
     }
 }
 
@@ -242,7 +273,7 @@ fn place(mut object: &mut Map<String, Json>, path: &[&str], value: Option<Json>)
 }
 
 /// Puts a key where it belongs, in place of one at its frame.
-fn put_key(keys: &mut Vec<Json>, frame: i64, value: Json) {
+pub fn put_key(keys: &mut Vec<Json>, frame: i64, value: Json) {
     let at = |key: &Json| key[0].as_f64().unwrap_or(f64::NEG_INFINITY);
     keys.retain(|key| at(key) != frame as f64);
     let place = keys.partition_point(|key| at(key) < frame as f64);

@@ -1,5 +1,7 @@
 //! Gestures on each kind of parameter, found by their names.
 
+mod wires;
+
 use std::sync::Arc;
 
 use egui::accesskit::Role;
@@ -8,19 +10,36 @@ use egui_kittest::kittest::Queryable;
 use egui_kittest::{Harness, Node};
 use serde_json::{Value as Json, json};
 
-use super::show;
+use super::{Context, show};
 use crate::editor::{NodeState, NodeStatus, Project, Selection, Statuses};
 use crate::graph::{Decision, Document, Report};
 
+#[derive(Default)]
 struct Desk {
     project: Project,
     selection: Selection,
     statuses: Statuses,
+    opened: String,
+    frame: i64,
+    takes_keyboard: bool,
+    /// The node that a link asked for last.
+    asked: Option<String>,
 }
 
 impl Desk {
     fn undo(&mut self) {
         self.project.undo().expect("a step");
+    }
+
+    fn show(&mut self, ui: &mut egui::Ui) {
+        let context = Context {
+            selection: &self.selection,
+            statuses: &self.statuses,
+            opened: &self.opened,
+            frame: Some(self.frame),
+            takes_keyboard: std::mem::take(&mut self.takes_keyboard),
+        };
+        self.asked = show(ui, &mut self.project, &context).or(self.asked.take());
     }
 }
 
@@ -29,16 +48,12 @@ type Inspector = Harness<'static, Desk>;
 fn inspector(nodes: Json, wires: Json, selected: &[&str]) -> Inspector {
     let text = json!({ "tyndall": 1, "nodes": nodes, "wires": wires }).to_string();
     let base = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs");
-    let mut document = Document::parse(&text, &base).unwrap();
-    document.frame = Some(12);
+    let document = Document::parse(&text, &base).unwrap();
     let mut selection = Selection::default();
     selection.nodes.extend(selected.iter().map(|name| (*name).to_owned()));
-    let desk = Desk { project: Project::new(document), selection, statuses: Statuses::default() };
+    let desk = Desk { project: Project::new(document), selection, frame: 12, ..Desk::default() };
     let size = vec2(320.0, 1400.0);
-    Harness::builder().with_size(size).build_ui_state(
-        |ui, desk: &mut Desk| show(ui, &mut desk.project, &desk.selection, &desk.statuses),
-        desk,
-    )
+    Harness::builder().with_size(size).build_ui_state(|ui, desk: &mut Desk| desk.show(ui), desk)
 }
 
 /// The inspector on one node with this type and these parameters, named `n`.
@@ -277,21 +292,21 @@ fn keys_come_and_go_at_the_frame() {
     let mut harness = on(json!({ "type": "medium", "g": 0.5 }));
     click(&mut harness, "n.g key");
     assert_eq!(param(&harness, "g"), json!({ "keys": [[12, 0.5]] }));
-    harness.state_mut().project.edit("frame", |document| document.frame = Some(20));
+    harness.state_mut().frame = 20;
     harness.run();
     // A change is a key where there are keys.
     type_into(&mut harness, "n.g", "0.7");
     assert_eq!(param(&harness, "g"), json!({ "keys": [[12, 0.5], [20, 0.7]] }));
-    harness.state_mut().project.edit("frame", |document| document.frame = Some(16));
+    harness.state_mut().frame = 16;
     harness.run();
     assert_eq!(node(&harness, "n.g").value().as_deref(), Some("0.6"));
     type_into(&mut harness, "n.g", "1");
     assert!(says(&harness, "is outside"));
-    harness.state_mut().project.edit("frame", |document| document.frame = Some(12));
+    harness.state_mut().frame = 12;
     harness.run();
     click(&mut harness, "n.g key");
     assert_eq!(param(&harness, "g"), json!({ "keys": [[20, 0.7]] }));
-    harness.state_mut().project.edit("frame", |document| document.frame = Some(20));
+    harness.state_mut().frame = 20;
     harness.run();
     click(&mut harness, "n.g key");
     assert_eq!(param(&harness, "g"), json!(0.7));
@@ -331,14 +346,17 @@ fn grids_of_the_file_are_a_menu() {
 }
 
 #[test]
-fn ports_say_what_they_are_wired_to() {
-    let nodes =
-        json!({ "cloud": { "type": "shape" }, "n": { "type": "medium" }, "march": { "type": "raymarch" } });
-    let harness = inspector(nodes, json!(["cloud.volume -> n.volume", "n.medium -> march.medium"]), &["n"]);
-    assert!(says(&harness, "<- cloud.volume") && says(&harness, "-> march.medium"));
-    let nodes = json!({ "n": { "type": "medium" } });
-    let harness = inspector(nodes, json!([]), &["n"]);
-    assert!(says(&harness, "empty: wire a volume to it") && says(&harness, "read by nothing"));
+fn what_differs_says_so() {
+    let nodes = json!({
+        "n": { "type": "medium", "g": 0.5, "albedo": [1, 1, 1] }, "m": { "type": "medium", "g": 0.25 }
+    });
+    let mut harness = inspector(nodes, json!([]), &["m", "n"]);
+    assert!(harness.query_by_label("n.g mixed").is_some());
+    // A default that is written down is the default, and 1.0 is 1.
+    assert!(harness.query_by_label("n.albedo mixed").is_none());
+    assert!(harness.query_by_label("n.density_scale mixed").is_none());
+    type_into(&mut harness, "n.g", "0.75");
+    assert!(harness.query_by_label("n.g mixed").is_none());
 }
 
 #[test]

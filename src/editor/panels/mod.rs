@@ -49,10 +49,12 @@ impl Possible {
             | Action::SaveAs
             | Action::Revert
             | Action::Versions
+            | Action::OtherPart
             | Action::FitPicture
             | Action::ActualSize
             | Action::FrameMedium
             | Action::Histogram
+            | Action::Slice
             | Action::StoreA
             | Action::StoreB => self.graph,
             _ => true,

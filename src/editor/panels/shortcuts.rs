@@ -12,7 +12,17 @@ const GESTURES: &[(&str, &str)] = &[
     ("Wheel", "Come nearer"),
     ("Right drag, W A S D Q E", "Look around and fly"),
     ("Ctrl wheel, Ctrl drag", "Zoom and move the picture"),
+    ("Drag the slice's knob", "Move the slice plane"),
+    ("Wheel or drag, slice flat", "Move it through the field"),
     ("Double-click a node", "Look at its picture"),
+    ("Double-click its header", "Rename it"),
+    ("Double-click a group", "Open it"),
+    ("Double-click a wire", "Bend it there"),
+    ("Drag a port into the empty", "Add a node that fits"),
+    ("Drag a port to a group's edge", "Make it a port of the group"),
+    ("Drag a node onto a wire", "Insert it"),
+    ("Space drag, middle drag", "Move the canvas"),
+    ("Arrows, Enter", "Walk the nodes, to their parameters"),
 ];
 
 /// Draws the page while it is open.

@@ -131,3 +131,33 @@ fn recents(ui: &mut Ui, recent: &[PathBuf]) -> Option<Choice> {
     }
     chosen
 }
+
+#[cfg(test)]
+mod tests {
+    use egui_kittest::Harness;
+
+    use super::*;
+    use crate::editor::snapshot::assert_looks;
+
+    #[test]
+    fn snapshot_of_the_start_page() {
+        // Of no preset that there is, whose picture may be made anew.
+        let preset = |name: &str, about: &str| Preset {
+            name: name.to_owned(),
+            about: about.to_owned(),
+            path: PathBuf::new(),
+        };
+        let presets = [preset("mist", "Thin, and lit from behind"), preset("steam", "Thick and white")];
+        let recent = [PathBuf::from("/graphs/cloud.json"), PathBuf::from("/graphs/fire.json")];
+        for (name, theme) in [("start_dark", egui::Theme::Dark), ("start_light", egui::Theme::Light)] {
+            let page = |ui: &mut Ui, start: &mut Start| {
+                egui::CentralPanel::default().show(ui, |ui| drop(start.show(ui, &presets, &recent)));
+            };
+            let builder = Harness::builder().with_size(vec2(600.0, 460.0));
+            let mut harness = builder.build_ui_state(page, Start::default());
+            theme::apply(&harness.ctx, theme.into());
+            harness.run_steps(3);
+            assert_looks(&mut harness, name);
+        }
+    }
+}

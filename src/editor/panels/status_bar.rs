@@ -1,6 +1,6 @@
 //! The line at the bottom: what runs, what it costs, on which device, and what is wrong with it.
 
-use egui::{Align, Layout, RichText, Ui};
+use egui::{Align, Layout, RichText, Sense, Shape, Stroke, Ui, Vec2, vec2};
 
 use crate::editor::theme;
 
@@ -40,7 +40,7 @@ pub fn show(ui: &mut Ui, figures: &Figures) -> bool {
                 retries = ui.button("Try again").clicked();
             }
         } else if let Some(name) = &figures.running {
-            ui.add(egui::Spinner::new().size(12.0));
+            turning(ui);
             let [done, all] = figures.progress;
             ui.label(format!("{name}  {done}/{all}"));
         } else if figures.n_failed > 0 {
@@ -86,6 +86,18 @@ pub fn time(ms: f64) -> String {
 fn bytes(n: u64) -> String {
     let mib = n as f64 / (1 << 20) as f64;
     if mib < 1024.0 { format!("{mib:.0} MiB") } else { format!("{:.1} GiB", mib / 1024.0) }
+}
+
+/// Something runs: an arc that turns twice a second. One that turns smoothly would have the window drawn as often as
+/// the screen shows it, and where there is no GPU that takes the cores that compute.
+fn turning(ui: &mut Ui) {
+    const STEP_SECS: f64 = 0.5;
+    let (rect, _) = ui.allocate_exact_size(vec2(12.0, 12.0), Sense::hover());
+    let steps = (ui.input(|input| input.time) / STEP_SECS).floor() % 8.0;
+    let angle = |n: u8| (steps as f32 + 0.75 * f32::from(n)) * std::f32::consts::FRAC_PI_4;
+    let arc = (0..=8).map(|n| rect.center() + 5.0 * Vec2::angled(angle(n))).collect();
+    ui.painter().add(Shape::line(arc, Stroke::new(1.5, ui.visuals().strong_text_color())));
+    ui.ctx().request_repaint_after_secs(STEP_SECS as f32);
 }
 
 #[cfg(test)]

@@ -16,7 +16,11 @@ impl Project {
     pub fn load(path: &Path) -> Result<Self, DocumentError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| DocumentError::Read { path: path.to_owned(), source })?;
-        let (document, left_out) = Document::open_leniently(&text, &folder(path))?;
+        let (mut document, mut left_out) = Document::open_leniently(&text, &folder(path))?;
+        // A file that is understood in full keeps its mistakes, which are its author's to mend.
+        if !left_out.is_empty() {
+            left_out.extend(document.leave_out_unknown(catalog()));
+        }
         let saved = left_out.is_empty().then(|| document.clone());
         Ok(Self { saved, document, left_out, file: Some(path.to_owned()), ..Self::default() })
     }
@@ -95,8 +99,9 @@ impl Project {
             return Ok(false);
         };
         let Self { document, saved, left_out, .. } = Self::load(file)?;
-        self.edit("revert to the file", |now| *now = document);
-        (self.saved, self.left_out) = (saved, left_out);
+        let frame = self.document.frame;
+        self.edit("revert to the file", |now| *now = Document { frame, ..document });
+        (self.saved, self.left_out) = (saved.map(|saved| Document { frame, ..saved }), left_out);
         Ok(true)
     }
 
@@ -107,8 +112,8 @@ impl Project {
     pub fn restore(&mut self, version: &versions::Version) -> Result<(), DocumentError> {
         let Self { document, .. } = Self::load(&version.path)?;
         // Its relative paths start at the graph, not at the version.
-        let base = self.document.base.clone();
-        self.edit("restore a version", |now| *now = Document { base, ..document });
+        let Document { base, frame, .. } = self.document.clone();
+        self.edit("restore a version", |now| *now = Document { base, frame, ..document });
         Ok(())
     }
 }

@@ -74,7 +74,15 @@ impl Project {
 
     /// Whether it differs from its file.
     pub fn is_unsaved(&self) -> bool {
-        self.saved.as_ref() != Some(&self.document)
+        !self.saved.as_ref().is_some_and(|saved| saved.is_as(&self.document))
+    }
+
+    /// Looks at another frame, which changes nothing that is saved or undone.
+    pub fn look_at(&mut self, frame: Option<i64>) {
+        self.document.frame = frame;
+        if let Some(saved) = &mut self.saved {
+            saved.frame = frame;
+        }
     }
 
     /// Changes the graph, as one step of undo. What changes nothing is no step.
@@ -126,9 +134,11 @@ impl Project {
         !self.redo.is_empty()
     }
 
-    fn swap(&mut self, step: Step) -> Step {
+    fn swap(&mut self, mut step: Step) -> Step {
         self.gesture = None;
         self.revision += 1;
+        // The frame is no part of the step.
+        step.document.frame = self.document.frame;
         Step { label: step.label, document: std::mem::replace(&mut self.document, step.document) }
     }
 
@@ -136,7 +146,7 @@ impl Project {
     fn apply(&mut self, label: &str, change: impl FnOnce(&mut Document)) -> bool {
         let before = self.document.clone();
         change(&mut self.document);
-        if self.document == before {
+        if self.document.is_as(&before) {
             return false;
         }
         self.undo.push(Step { label: label.to_owned(), document: before });

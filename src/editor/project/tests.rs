@@ -66,6 +66,25 @@ fn saved_and_unsaved() {
 }
 
 #[test]
+fn looking_at_another_frame_is_no_change() {
+    let (_dir, file, _) = folder();
+    let mut project = Project::load(&file).unwrap();
+    let revision = project.revision();
+    project.look_at(Some(3));
+    assert_eq!((project.document().frame, project.revision()), (Some(3), revision));
+    assert!(!project.is_unsaved() && !project.can_undo());
+    project.edit("say", say("a"));
+    project.look_at(Some(5));
+    project.undo();
+    assert!(project.document().frame == Some(5) && !project.is_unsaved());
+    project.redo();
+    assert!(project.revert().unwrap());
+    assert!(project.document().frame == Some(5) && !project.is_unsaved());
+    project.look_at(None);
+    assert!(!project.is_unsaved());
+}
+
+#[test]
 fn another_folder_reaches_the_same_files() {
     let (dir, file, _) = folder();
     let mut project = Project::load(&file).unwrap();
@@ -127,10 +146,14 @@ fn revert_is_a_step() {
 #[test]
 fn a_later_version_is_unsaved_and_kept() {
     let (_dir, file, state) = folder();
-    let later = r#"{"tyndall": 9, "nodes": {}, "wires": [], "clouds": 3}"#;
+    let later = r#"{"tyndall": 9, "nodes": {"sun": {"type": "sun", "spots": 3}, "rain": {"type": "rain"}}, "wires": [],
+        "clouds": 3}"#;
     std::fs::write(&file, later).unwrap();
     let mut project = Project::load(&file).unwrap();
-    assert_eq!(project.left_out().len(), 2);
+    assert_eq!(project.left_out().len(), 4);
+    assert_eq!(project.left_out()[2..], ["parameter 'sun.spots'", "node 'rain' of the unknown type 'rain'"]);
+    // What is understood can be worked with.
+    assert!(project.document().nodes["sun"].params.is_empty() && project.document().nodes.len() == 1);
     assert!(project.is_unsaved());
     project.keep_versions(&state);
     project.save().unwrap();

@@ -32,6 +32,10 @@ pub fn show(
     ui.add_space(2.0);
 }
 
+fn named(response: &egui::Response, name: &str) {
+    response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::ComboBox, true, name));
+}
+
 fn layers(viewport: &mut Viewport, ui: &mut Ui, image: Option<&Image>) {
     let Some(image) = image else { return };
     let menu = ComboBox::from_id_salt("layer").selected_text(&viewport.layer).width(90.0);
@@ -40,6 +44,7 @@ fn layers(viewport: &mut Viewport, ui: &mut Ui, image: Option<&Image>) {
             ui.selectable_value(&mut viewport.layer, name.clone(), name);
         }
     });
+    named(&response.response, "Layer");
     response.response.on_hover_text("The layer that is shown");
     if !image.layers.contains_key(&viewport.layer) {
         viewport.layer = BEAUTY.to_owned();
@@ -55,11 +60,13 @@ fn tone(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, look: &look
     let response = ui.add(drag).on_hover_text("Exposure: one more is twice as bright");
     response.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::DragValue, true, "Exposure"));
     let name = CURVES.iter().find(|(curve, _)| *curve == tone.curve).map_or("", |(_, name)| name);
-    ComboBox::from_id_salt("curve").selected_text(name).width(64.0).show_ui(ui, |ui| {
+    let curves = ComboBox::from_id_salt("curve").selected_text(name).width(64.0).show_ui(ui, |ui| {
         for (curve, name) in CURVES {
             ui.selectable_value(&mut tone.curve, curve, name);
         }
     });
+    named(&curves.response, "Tone curve");
+    curves.response.on_hover_text("Tone curve");
     if tone != before {
         match &look.tone {
             Some(node) => project.edit_during(Id::new("exposure"), "change the exposure", |document| {
@@ -95,6 +102,10 @@ fn places(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, scene: &S
         ui.weak(format!("{percent:.0} %"));
     }
     ui.toggle_value(&mut viewport.shows_histogram, "Histogram");
+    let mut slices = viewport.slice.is_on();
+    if ui.toggle_value(&mut slices, "Slice").on_hover_text("A plane through a field").changed() {
+        viewport.slice.toggle();
+    }
     ui.menu_button("Wipe", |ui| wipe(viewport, ui, scene))
         .response
         .on_hover_text("Compare with another picture");

@@ -1,17 +1,53 @@
 //! Gestures on the picture: they move the wired camera, the picture's place, or the wipe's divider.
+//!
+//! A camera whose place has keys gets one at the frame that is looked at, or has the one that is there moved.
 
-use egui::{Id, Key, PointerButton, Rect, Response, Ui};
+use std::collections::BTreeSet;
+
+use egui::{CursorIcon, Id, Key, PointerButton, Rect, Response, Sense, Ui, WidgetInfo, WidgetType};
 use glam::DVec3;
 use serde_json::{Value as Json, json};
 
-use super::{Place, Scene, Viewport, Wipe, eye};
+use super::{Place, Scene, Viewport, eye};
 use crate::camera::Camera;
 use crate::editor::Project;
+use crate::editor::inspector::put_key;
+use crate::graph::Document;
 
 /// Points around the divider that take hold of it.
 const GRIP: f32 = 8.0;
 
-/// Applies this frame's gestures.
+/// With Ctrl a drag moves the picture in its area, and the wheel makes it larger; whether it did.
+pub fn place(place: &mut Place, ui: &Ui, response: &Response, area: Rect, size: [usize; 2]) -> bool {
+    if ui.input(|input| input.modifiers.command) && response.dragged() {
+        *place = place.moved(area, size, response.drag_delta());
+        return true;
+    }
+    let zoom = ui.input(|input| input.zoom_delta());
+    if response.hovered() && zoom != 1.0 {
+        let at = response.hover_pos().unwrap_or(area.center());
+        *place = place.zoomed(area, size, at, zoom);
+        return true;
+    }
+    false
+}
+
+/// The line between two pictures that lie at `rect`.
+pub fn divider(viewport: &mut Viewport, ui: &Ui, area: Rect, rect: Rect) {
+    let x = rect.left() + viewport.divider * rect.width();
+    let visible = rect.intersect(area);
+    let line = Rect::from_x_y_ranges(x - GRIP..=x + GRIP, visible.y_range());
+    let response = ui.interact(line, ui.id().with("divider"), Sense::drag());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Slider, true, "Wipe divider"));
+    if response.hovered() || response.dragged() {
+        ui.ctx().set_cursor_icon(CursorIcon::ResizeHorizontal);
+    }
+    if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
+        viewport.divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+    }
+}
+
+/// Applies this frame's gestures on the picture.
 pub fn take(
     viewport: &mut Viewport,
     ui: &Ui,
@@ -21,45 +57,24 @@ pub fn take(
     (area, rect, size): (Rect, Rect, [usize; 2]),
 ) {
     let now = ui.input(|input| input.time);
-    if response.drag_stopped() {
-        viewport.moves_divider = false;
+    if ui.input(|input| input.pointer.any_released()) {
         project.end_gesture();
     }
     if viewport.wheeled.is_some() && !viewport.is_moving(now) {
         viewport.wheeled = None;
         project.end_gesture();
     }
-    let (control, shift) = ui.input(|input| (input.modifiers.command, input.modifiers.shift));
-    let delta = response.drag_delta();
-    if response.drag_started_by(PointerButton::Primary) && viewport.wipe != Wipe::Off {
-        let x = rect.left() + viewport.divider * rect.width();
-        let start = ui.input(|input| input.pointer.press_origin());
-        viewport.moves_divider = start.is_some_and(|at| (at.x - x).abs() < GRIP);
-    }
-    if viewport.moves_divider {
-        if let Some(at) = response.interact_pointer_pos() {
-            viewport.divider = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
-        }
+    if place(&mut viewport.place, ui, response, area, size) {
         return;
-    }
-    if control && response.dragged() {
-        viewport.place = viewport.place.moved(area, size, delta);
-        return;
-    }
-    if response.hovered() {
-        let (wheel, zoom) = ui.input(|input| (input.smooth_scroll_delta().y, input.zoom_delta()));
-        if zoom != 1.0 {
-            let at = response.hover_pos().unwrap_or(area.center());
-            viewport.place = viewport.place.zoomed(area, size, at, zoom);
-        } else if wheel != 0.0
-            && let Some(camera) = scene.camera
-        {
-            viewport.wheeled = Some(now);
-            write(project, scene, Some("dolly"), "come nearer", eye::dolly(camera, f64::from(wheel) / 40.0));
-            ui.ctx().request_repaint_after_secs(0.35);
-        }
     }
     let Some(camera) = scene.camera else { return };
+    let delta = response.drag_delta();
+    let (wheel, shift) = ui.input(|input| (input.smooth_scroll_delta().y, input.modifiers.shift));
+    if response.hovered() && wheel != 0.0 {
+        viewport.wheeled = Some(now);
+        write(project, scene, Some("dolly"), "come nearer", eye::dolly(camera, f64::from(wheel) / 40.0));
+        ui.ctx().request_repaint_after_secs(0.35);
+    }
     let share = f64::from(1.0 / rect.height().max(1.0));
     let [x, y] = [f64::from(delta.x) * share, f64::from(delta.y) * share];
     let pans =
@@ -70,7 +85,8 @@ pub fn take(
         // Half a turn a height.
         let turn = std::f64::consts::PI;
         write(project, scene, Some("orbit"), "orbit", eye::orbit(camera, -x * turn, y * turn));
-    } else if response.dragged_by(PointerButton::Secondary) {
+    } else if response.is_pointer_button_down_on() && ui.input(|input| input.pointer.secondary_down()) {
+        // Not only once it is a drag: keys fly while the pointer rests.
         let turned = eye::turn(camera, -x, y);
         let step = f64::from(ui.input(|input| input.stable_dt)).min(0.1);
         let key = |plus: Key, minus: Key| {
@@ -87,19 +103,52 @@ pub fn take(
     }
 }
 
-/// Writes position and target into the camera's node.
+/// The parameters that a hand moves.
+const MOVED: [&str; 2] = ["position", "look_at"];
+
+/// Frames at which a camera's place has keys, and the frame at which a move sets one: the one that is looked at, or
+/// where none is the first, whose value then holds. `None` for a camera without keys.
+pub fn keys(document: &Document, camera: &str) -> Option<(BTreeSet<i64>, i64)> {
+    let node = document.node(camera)?;
+    let keys = MOVED.iter().filter_map(|param| node.params.get(*param)?.get("keys")?.as_array());
+    let frames: BTreeSet<i64> = keys.flatten().filter_map(|key| key.get(0)?.as_i64()).collect();
+    let first = *frames.first()?;
+    Some((frames, document.frame.unwrap_or(first)))
+}
+
+/// Writes position and target into the camera's node, each as far as it has moved; what has keys gets one at the
+/// frame.
 pub fn write(project: &mut Project, scene: &Scene, gesture: Option<&str>, label: &str, camera: Camera) {
-    let Some(name) = scene.look.and_then(|look| look.camera.clone()) else { return };
-    let change = |document: &mut crate::graph::Document| {
-        if let Some(node) = document.node_mut(&name) {
-            for (param, place) in [("position", camera.position), ("look_at", camera.look_at)] {
-                node.params.insert(param.to_owned(), json(place));
+    let (Some(name), Some(before)) = (scene.look.and_then(|look| look.camera.clone()), scene.camera) else {
+        return;
+    };
+    let at = keys(project.document(), &name).map(|(_, frame)| frame);
+    let label = match at {
+        Some(frame) => format!("{label}, key at frame {frame}"),
+        None => label.to_owned(),
+    };
+    let change = |document: &mut Document| {
+        let Some(node) = document.node_mut(&name) else { return };
+        let places = [(before.position, camera.position), (before.look_at, camera.look_at)];
+        for (param, (before, place)) in MOVED.iter().zip(places) {
+            if before == place {
+                continue;
             }
+            let given = node.params.get(*param).and_then(|given| given.get("keys")?.as_array().cloned());
+            let value = match (given, at) {
+                (Some(mut keys), Some(frame)) => {
+                    put_key(&mut keys, frame, json(place));
+                    json!({ "keys": keys })
+                }
+                _ => json(place),
+            };
+            node.params.insert((*param).to_owned(), value);
         }
     };
     match gesture {
-        Some(gesture) => project.edit_during(Id::new(("camera", gesture)), label, change),
-        None => project.edit(label, change),
+        // Another frame is another key, and so another step.
+        Some(gesture) => project.edit_during(Id::new(("camera", gesture, at)), &label, change),
+        None => project.edit(&label, change),
     }
 }
 

@@ -12,8 +12,12 @@ mod bar;
 pub mod display;
 mod eye;
 mod hand;
+mod lens;
 mod overlay;
 mod place;
+mod slice;
+#[cfg(test)]
+mod tests;
 
 use std::collections::HashMap;
 
@@ -24,12 +28,14 @@ use super::look::{self, Look};
 use super::preview::Level;
 use super::{Project, theme};
 use crate::camera::Camera;
-use crate::graph::Value;
+use crate::graph::{Document, Value};
 use crate::image::{BEAUTY, Image};
 
 use display::Histogram;
 pub use display::{Tone, thumbnail};
+use lens::Lens;
 use place::Place;
+pub use slice::{NAME as SLICE, Slice};
 
 /// A picture that came to be.
 #[derive(Debug, Clone)]
@@ -54,6 +60,8 @@ pub struct Scene<'a> {
     pub problem: Option<(String, String)>,
     /// Something runs.
     pub is_busy: bool,
+    /// The document without groups, while there is a slice plane.
+    pub flat: Option<&'a Document>,
 }
 
 /// What a wipe shows beyond its divider.
@@ -77,12 +85,13 @@ pub struct Viewport {
     wipe: Wipe,
     /// Share of the picture's width at which the wipe divides it.
     divider: f32,
-    moves_divider: bool,
     stored: [Option<Picture>; 2],
     shown: [Option<Shown>; 2],
     shows_histogram: bool,
     /// When the camera last moved by the wheel, in seconds.
     wheeled: Option<f64>,
+    /// The slice plane.
+    pub slice: Slice,
 }
 
 impl Default for Viewport {
@@ -93,11 +102,11 @@ impl Default for Viewport {
             tone: Tone::default(),
             wipe: Wipe::Off,
             divider: 0.5,
-            moves_divider: false,
             stored: [None, None],
             shown: [None, None],
             shows_histogram: false,
             wheeled: None,
+            slice: Slice::default(),
         }
     }
 }
@@ -115,6 +124,7 @@ impl Viewport {
     /// The whole picture, as large as fits.
     pub fn fit(&mut self) {
         self.place = Place::Fit;
+        self.slice.fit();
     }
 
     /// A pixel of the screen for each of the picture.
@@ -133,6 +143,11 @@ impl Viewport {
         self.wipe = if self.stored[slot].is_some() { Wipe::Stored(slot) } else { Wipe::Off };
     }
 
+    /// Whether a move of this camera sets a key.
+    pub fn has_keys(document: &Document, camera: &str) -> bool {
+        hand::keys(document, camera).is_some()
+    }
+
     /// Whether the wheel moved the camera a moment ago: what is asked for must keep up.
     pub fn is_moving(&self, now: f64) -> bool {
         self.wheeled.is_some_and(|then| now - then < 0.3)
@@ -149,10 +164,19 @@ impl Viewport {
     pub fn show(&mut self, ui: &mut Ui, project: &mut Project, scene: &Scene) {
         let picture = scene.look.and_then(|look| scene.pictures.get(&look.source.node));
         bar::show(self, ui, project, scene, picture.map(|picture| picture.value.get::<Image>()));
+        let has_place = scene.camera.is_some_and(|camera| camera.frame().is_ok());
+        if let Some(flat) = scene.flat {
+            slice::strip(&mut self.slice, ui, flat, has_place);
+        }
         let area = ui.available_rect_before_wrap();
         let response = ui.allocate_rect(area, Sense::click_and_drag());
-        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Picture"));
         ui.painter().rect_filled(area, 0.0, theme::backdrop(ui));
+        if let Some(flat) = scene.flat.filter(|_| self.slice.is_flat(has_place)) {
+            response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Flat slice"));
+            slice::flat(&mut self.slice, ui, area, &response, flat);
+            return;
+        }
+        response.widget_info(|| WidgetInfo::labeled(WidgetType::Image, true, "Picture"));
         let Some(picture) = picture else {
             overlay::placeholder(ui, area, scene);
             return;
@@ -177,6 +201,13 @@ impl Viewport {
             self.develop(ui, 1, other, tone);
         }
         self.paint(ui, area, rect, other.is_some());
+        if other.is_some() {
+            hand::divider(self, ui, area, rect);
+        }
+        let lens = scene.camera.and_then(|camera| Lens::new(camera, rect));
+        if let (Some(flat), Some(lens)) = (scene.flat, &lens) {
+            slice::in_picture(&mut self.slice, ui, (area, rect), &response, lens, flat);
+        }
         if scene.is_busy && !picture.level.is_full() {
             overlay::refining(ui, area);
         }
@@ -186,6 +217,11 @@ impl Viewport {
         }
         if let Some(at) = response.hover_pos() {
             overlay::readout(ui, area, rect, at, image, scene.camera, &self.layer);
+        }
+        if let Some((frames, frame)) =
+            scene.look.and_then(|look| hand::keys(project.document(), look.camera.as_ref()?))
+        {
+            overlay::keys(ui, area, &frames, frame);
         }
         if let Some((name, message)) = &scene.problem {
             overlay::problem(ui, area, name, message);

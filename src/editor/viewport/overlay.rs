@@ -1,24 +1,67 @@
 //! What is drawn over the picture: scale bar, axes, value under the cursor, histogram, messages.
 
-use egui::{Align2, Color32, FontId, Pos2, Rect, Stroke, Ui, pos2, vec2};
+use std::collections::BTreeSet;
+
+use egui::{Align2, Color32, FontId, Pos2, Rect, Sense, Stroke, Ui, WidgetInfo, WidgetType, pos2, vec2};
 use glam::DVec3;
 
 use super::Scene;
 use super::display::{Histogram, luminance};
+use super::lens::Lens;
 use super::place::{length_text, lower_left, pixel_at, round_length};
 use crate::camera::Camera;
 use crate::image::{DEPTH, Image};
 
-const INK: Color32 = Color32::from_rgb(235, 238, 242);
-const SHADE: Color32 = Color32::from_black_alpha(150);
+/// On [`SHADE`], whatever the theme: both lie on a picture.
+pub const INK: Color32 = Color32::from_rgb(235, 238, 242);
+/// Behind text.
+pub const SHADE: Color32 = Color32::from_black_alpha(150);
+
+/// Tells a screen reader what is drawn at a place.
+fn say(ui: &Ui, id: &str, rect: Rect, text: &str) {
+    let response = ui.interact(rect, ui.id().with(id), Sense::hover());
+    response.widget_info(|| WidgetInfo::labeled(WidgetType::Label, true, text));
+}
 
 /// A line of text on a dark pill.
-fn pill(ui: &Ui, at: Pos2, anchor: Align2, text: &str, ink: Color32) -> Rect {
-    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::monospace(11.5), ink);
+pub fn pill(ui: &Ui, id: &str, at: Pos2, anchor: Align2, text: &str) {
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), FontId::monospace(11.5), INK);
     let rect = anchor.anchor_size(at, galley.size() + vec2(14.0, 8.0));
     ui.painter().rect_filled(rect, 4.0, SHADE);
-    ui.painter().galley(rect.min + vec2(7.0, 4.0), galley, ink);
-    rect
+    ui.painter().galley(rect.min + vec2(7.0, 4.0), galley, INK);
+    say(ui, id, rect, text);
+}
+
+/// Where the world's axes stand.
+pub fn corner(area: Rect) -> Pos2 {
+    lower_left(area) + vec2(34.0, -34.0)
+}
+
+/// A round length, at most some 110 points long.
+pub fn scale_bar(ui: &Ui, area: Rect, at: Pos2, points_per_m: f64, ink: Color32) {
+    let length_m = round_length(110.0 / points_per_m);
+    let length = (length_m * points_per_m) as f32;
+    if length <= 4.0 {
+        return;
+    }
+    let painter = ui.painter().with_clip_rect(area);
+    let line = Stroke::new(1.5, ink);
+    painter.line_segment([at, at + vec2(length, 0.0)], line);
+    for x in [0.0, length] {
+        painter.line_segment([at + vec2(x, -4.0), at + vec2(x, 4.0)], line);
+    }
+    let text = length_text(length_m);
+    let font = FontId::proportional(11.0);
+    painter.text(at + vec2(0.5 * length, -5.0), Align2::CENTER_BOTTOM, &text, font, ink);
+    let rect = Rect::from_min_max(at + vec2(0.0, -18.0), at + vec2(length, 4.0));
+    say(ui, "scale bar", rect, &format!("Scale bar: {text}"));
+}
+
+/// A line in the middle, where there is nothing else.
+pub fn note(ui: &mut Ui, area: Rect, text: &str) {
+    let rect = Rect::from_center_size(area.center(), vec2(420.0_f32.min(area.width()), 60.0));
+    let mut place = ui.new_child(egui::UiBuilder::new().max_rect(rect));
+    place.vertical_centered(|ui| ui.label(egui::RichText::new(text).size(14.0).weak()));
 }
 
 /// Where there is no picture: what to do, or why.
@@ -32,9 +75,7 @@ pub fn placeholder(ui: &mut Ui, area: Rect, scene: &Scene) {
         (_, true) => "The first picture is on its way …",
         (_, false) => "No picture yet.",
     };
-    let mut place = ui
-        .new_child(egui::UiBuilder::new().max_rect(Rect::from_center_size(area.center(), vec2(420.0, 60.0))));
-    place.vertical_centered(|ui| ui.label(egui::RichText::new(text).size(14.0).weak()));
+    note(ui, area, text);
 }
 
 /// A node that failed, in plain words.
@@ -59,7 +100,16 @@ pub fn problem(ui: &mut Ui, area: Rect, name: &str, message: &str) {
 
 /// The picture is a preview.
 pub fn refining(ui: &Ui, area: Rect) {
-    pill(ui, area.right_top() + vec2(-10.0, 10.0), Align2::RIGHT_TOP, "refining …", INK);
+    pill(ui, "refining", area.right_top() + vec2(-10.0, 10.0), Align2::RIGHT_TOP, "refining …");
+}
+
+/// A camera with keys: which frame a move changes.
+pub fn keys(ui: &Ui, area: Rect, frames: &BTreeSet<i64>, frame: i64) {
+    let text = match frames.contains(&frame) {
+        true => format!("key at frame {frame}"),
+        false => format!("a move sets a key at frame {frame}"),
+    };
+    pill(ui, "keys", area.center_top() + vec2(0.0, 10.0), Align2::CENTER_TOP, &text);
 }
 
 /// Scale bar at the target's distance, and the world's axes.
@@ -68,7 +118,7 @@ pub fn guides(ui: &Ui, area: Rect, rect: Rect, camera: Option<Camera>) {
         return;
     };
     let painter = ui.painter().with_clip_rect(area);
-    let corner = lower_left(rect.intersect(area)) + vec2(34.0, -34.0);
+    let corner = corner(rect.intersect(area));
     let (right_unit, up_unit) = (right.normalize(), up.normalize());
     let mut axes =
         [(DVec3::X, "x", (236, 104, 96)), (DVec3::Y, "y", (126, 200, 110)), (DVec3::Z, "z", (104, 156, 240))];
@@ -82,24 +132,7 @@ pub fn guides(ui: &Ui, area: Rect, rect: Rect, camera: Option<Camera>) {
     }
     let height_m = 2.0 * up.length() * camera.position.distance(camera.look_at);
     let points_per_m = f64::from(rect.height()) / height_m;
-    let length_m = round_length(110.0 / points_per_m);
-    let length = (length_m * points_per_m) as f32;
-    if length > 4.0 {
-        let at = corner + vec2(52.0, 18.0);
-        let line = Stroke::new(1.5, INK);
-        painter.line_segment([at, at + vec2(length, 0.0)], line);
-        for x in [0.0, length] {
-            painter.line_segment([at + vec2(x, -4.0), at + vec2(x, 4.0)], line);
-        }
-        let text = length_text(length_m);
-        painter.text(
-            at + vec2(0.5 * length, -5.0),
-            Align2::CENTER_BOTTOM,
-            text,
-            FontId::proportional(11.0),
-            INK,
-        );
-    }
+    scale_bar(ui, area, corner + vec2(52.0, 18.0), points_per_m, INK);
 }
 
 /// Radiance, luminance, depth and place of the pixel under the cursor.
@@ -126,20 +159,20 @@ pub fn readout(
     let depth = image.layers.get(DEPTH).map_or(0.0, |depth| depth.data[idx]);
     if depth > 0.0 {
         text += &format!("   depth {} m", short(depth));
-        if let Some((camera, Ok([forward, right, up]))) = camera.map(|camera| (camera, camera.frame())) {
-            let share = (at - rect.min) / rect.size();
-            let [x, y] = [2.0 * f64::from(share.x) - 1.0, 1.0 - 2.0 * f64::from(share.y)];
-            let p = camera.position + (forward + right * x + up * y).normalize() * f64::from(depth);
+        if let Some(lens) = camera.and_then(|camera| Lens::new(camera, rect)) {
+            let [eye, ray] = lens.ray(at);
+            let p = eye + ray * f64::from(depth);
             text += &format!("   at {} {} {} m", short(p.x as f32), short(p.y as f32), short(p.z as f32));
         }
     }
-    pill(ui, area.right_bottom() + vec2(-10.0, -10.0), Align2::RIGHT_BOTTOM, &text, INK);
+    pill(ui, "value", area.right_bottom() + vec2(-10.0, -10.0), Align2::RIGHT_BOTTOM, &text);
 }
 
 /// Four digits.
-fn short(x: f32) -> String {
+pub fn short(x: f32) -> String {
     match x.abs() {
-        a if a == 0.0 || (1e-3..1e5).contains(&a) => {
+        0.0 => "0".to_owned(),
+        a if (1e-3..1e5).contains(&a) => {
             let digits = (3.0 - a.max(1e-3).log10().floor()).clamp(0.0, 6.0) as usize;
             format!("{x:.digits$}")
         }
@@ -172,5 +205,6 @@ pub fn histogram(ui: &Ui, area: Rect, histogram: &Histogram, layer: &str) {
     if histogram.n_odd > 0 {
         text += &format!(" · {} pixels are not finite", histogram.n_odd);
     }
-    painter.text(rect.left_top() + vec2(8.0, 2.0), Align2::LEFT_TOP, text, font, INK);
+    painter.text(rect.left_top() + vec2(8.0, 2.0), Align2::LEFT_TOP, &text, font, INK);
+    say(ui, "histogram", rect, &format!("Histogram of {text}"));
 }

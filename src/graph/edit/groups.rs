@@ -167,7 +167,7 @@ fn middle(document: &Document) -> Option<[f64; 2]> {
 
 /// The port of a group that stands for `end`; a new one has the port's own name, or `node_port` where that is
 /// taken.
-fn port_of<T: PartialEq>(ports: &mut IndexMap<String, T>, end: &End, stands_for: T) -> String {
+pub(super) fn port_of<T: PartialEq>(ports: &mut IndexMap<String, T>, end: &End, stands_for: T) -> String {
     if let Some((name, _)) = ports.iter().find(|(_, known)| **known == stands_for) {
         return name.clone();
     }

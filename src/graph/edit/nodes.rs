@@ -2,6 +2,7 @@
 
 use super::no_node;
 use crate::graph::document::{Document, End, Node, Wire, is_node_name};
+use crate::graph::ports::Side;
 
 impl Document {
     /// `like`, or `like_2`, `like_3`, ..: the first that no node has. A number at its end is counted on.
@@ -77,9 +78,14 @@ impl Document {
 
     /// Changes each end of a wire, bend and port of the group.
     pub(super) fn map_ends(&mut self, mut change: impl FnMut(&mut End)) {
+        self.map_ports(|_, end| change(end));
+    }
+
+    /// As [`Self::map_ends`], told on which side of its node each is.
+    pub(super) fn map_ports(&mut self, mut change: impl FnMut(Side, &mut End)) {
         let mut change_wire = |wire: &mut Wire| {
-            change(&mut wire.from);
-            change(&mut wire.to);
+            change(Side::Output, &mut wire.from);
+            change(Side::Input, &mut wire.to);
         };
         self.wires.iter_mut().for_each(&mut change_wire);
         let bends = std::mem::take(&mut self.bends).into_iter();
@@ -89,8 +95,8 @@ impl Document {
                 (wire, points)
             })
             .collect();
-        self.inputs.values_mut().flatten().for_each(&mut change);
-        self.outputs.values_mut().for_each(&mut change);
+        self.inputs.values_mut().flatten().for_each(|end| change(Side::Input, end));
+        self.outputs.values_mut().for_each(|end| change(Side::Output, end));
     }
 
     /// Forgets the bends of wires that are gone.

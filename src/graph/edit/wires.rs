@@ -6,7 +6,7 @@ use super::no_node;
 use crate::graph::check::fit;
 use crate::graph::document::{Document, End, Wire};
 use crate::graph::flat::expand;
-use crate::graph::ports::Port;
+use crate::graph::ports::{Port, Side};
 use crate::graph::spec::Catalog;
 
 impl Document {
@@ -45,6 +45,7 @@ impl Document {
         if !takes_many {
             self.wires.retain(|other| other.to != wire.to);
             self.drop_bends();
+            self.forget_input(&wire.to);
         }
         self.wires.push(wire);
         Ok(())
@@ -73,10 +74,10 @@ impl Document {
             return Err(format!("nothing is known of what goes through '{wire}'"));
         };
         let end = |port: &str| End { node: name.to_owned(), port: port.to_owned() };
-        let is_open = |port: &Port| {
-            port.spec.kind == kind
-                && (port.spec.many || self.wires.iter().all(|other| other.to != end(port.name)))
+        let is_empty = |end: End| {
+            self.wires.iter().all(|other| other.to != end) && self.group_port_of(Side::Input, &end).is_none()
         };
+        let is_open = |port: &Port| port.spec.kind == kind && (port.spec.many || is_empty(end(port.name)));
         let input = node.inputs(catalog).unwrap_or_default().into_iter().find(is_open);
         let output =
             node.outputs(catalog).unwrap_or_default().into_iter().find(|port| port.spec.kind == kind);
@@ -123,32 +124,37 @@ impl Document {
 
     /// The cycle that a wire would close, of nodes as they are without groups, from its reader to it again.
     fn cycle_by(&self, wire: &Wire) -> Option<Vec<String>> {
-        let mut with = self.clone();
-        with.wires.retain(|other| other != wire);
-        let n_before = expand(&with, |_| true).wires.len();
-        // Put first, so that what it becomes stands first.
-        with.wires.insert(0, wire.clone());
-        let flat = expand(&with, |_| true);
-        let new = &flat.wires[..flat.wires.len() - n_before];
-        new.iter().find_map(|new| {
-            // Against the wires from the giver on, until the reader is met; each node keeps who led to it.
-            let mut paths = vec![vec![new.from.node.as_str()]];
-            let mut seen = HashSet::from([new.from.node.as_str()]);
-            while let Some(path) = paths.pop() {
-                let here = path[path.len() - 1];
-                if here == new.to.node {
-                    let cycle = std::iter::once(here).chain(path.iter().rev().skip(1).copied());
-                    return Some(cycle.chain([here]).map(str::to_owned).collect());
-                }
-                for read in flat.wires.iter().filter(|other| other.to.node == here) {
-                    if seen.insert(&read.from.node) {
-                        paths.push([path.as_slice(), &[&read.from.node]].concat());
-                    }
+        let mut before = self.clone();
+        before.wires.retain(|other| other != wire);
+        let mut after = before.clone();
+        after.wires.push(wire.clone());
+        closed_cycle(&before, &after)
+    }
+}
+
+/// The cycle that what one document has wired and the other has not closes, of nodes as they are without groups,
+/// from the reader of a new wire to it again.
+pub(super) fn closed_cycle(before: &Document, after: &Document) -> Option<Vec<String>> {
+    let old: HashSet<Wire> = expand(before, |_| true).wires.into_iter().collect();
+    let flat = expand(after, |_| true);
+    flat.wires.iter().filter(|wire| !old.contains(wire)).find_map(|new| {
+        // Against the wires from the giver on, until the reader is met; each node keeps who led to it.
+        let mut paths = vec![vec![new.from.node.as_str()]];
+        let mut seen = HashSet::from([new.from.node.as_str()]);
+        while let Some(path) = paths.pop() {
+            let here = path[path.len() - 1];
+            if here == new.to.node {
+                let cycle = std::iter::once(here).chain(path.iter().rev().skip(1).copied());
+                return Some(cycle.chain([here]).map(str::to_owned).collect());
+            }
+            for read in flat.wires.iter().filter(|other| other.to.node == here) {
+                if seen.insert(&read.from.node) {
+                    paths.push([path.as_slice(), &[&read.from.node]].concat());
                 }
             }
-            None
-        })
-    }
+        }
+        None
+    })
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! is counted apart. Voxels that hold exactly what stands outside of them (the void around a cloud) are left out unless
 //! asked for, because they would dwarf all else. Tested by numbers whose bins are known.
 
-use super::scalar::{GRID, INPUTS, Scalar, range};
+use super::scalar::{BEAM, GRID, INPUTS, Scalar, range};
 use super::{NodeKind, Rules, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::image::{Image, Table};
@@ -26,6 +26,7 @@ static SPEC: NodeSpec = NodeSpec {
     ],
     params: &[
         GRID,
+        BEAM,
         ParamSpec::int("bins", 64).between(1.0, 65536.0).soft(8.0, 256.0).doc("How many bins."),
         ParamSpec::vector("range", &[0.0, 1.0])
             .or_null()

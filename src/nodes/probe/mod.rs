@@ -4,7 +4,7 @@
 
 use glam::DVec3;
 
-use super::scalar::{GRID, INPUTS, Scalar};
+use super::scalar::{BEAM, GRID, INPUTS, Scalar};
 use super::{NodeKind, Rules, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
 use crate::image::Table;
@@ -22,6 +22,7 @@ static SPEC: NodeSpec = NodeSpec {
     outputs: &[PortSpec::new("table", PortType::Table, "distance, position, index and value of each sample")],
     params: &[
         GRID,
+        BEAM,
         ParamSpec::vector("from", &[0.0, 0.0, 0.0]).unit("m").doc("The point, or where the line begins."),
         ParamSpec::vector("to", &[0.0, 0.0, 0.0])
             .unit("m")

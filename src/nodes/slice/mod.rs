@@ -2,16 +2,18 @@
 //!
 //! The plane's picture is the smallest rectangle that holds where it could meet the box of voxels, with square pixels.
 //! It is seen from the side to which its normal points, with +Y up, or −Z where the normal is along Y. On the CPU: a
-//! picture of 512² is a quarter of a million interpolations, a few milliseconds. Tested by a linear field, which the
-//! interpolation reproduces, for every axis and a plane that lies crooked.
+//! picture of 512² is a quarter of a million interpolations, a few milliseconds. Where the plane lies and which values
+//! the colors stand for is a table, so that whoever shows the picture can put it into its place and write a legend.
+//! Tested by a linear field, which the interpolation reproduces, for every axis and a plane that lies crooked, and by
+//! depths and fluences that are known.
 
 use glam::DVec3;
 use rayon::prelude::*;
 
-use super::scalar::{GRID, INPUTS, Scalar, range};
+use super::scalar::{BEAM, GRID, INPUTS, Scalar, range};
 use super::{NodeKind, Rules, Run, no_files};
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Value};
-use crate::image::{ALPHA, Colormap, Image, colormap};
+use crate::image::{ALPHA, Colormap, Image, Table, colormap};
 
 pub(super) const KIND: NodeKind = NodeKind { spec: &SPEC, files: no_files, run, rules: Rules::None };
 
@@ -19,13 +21,19 @@ static SPEC: NodeSpec = NodeSpec {
     id: "slice",
     version: 1,
     category: Category::Image,
-    purpose: "Cuts a plane through a volume or medium and colors its values.",
+    purpose: "Cuts a plane through a volume, medium, beam or residual and colors its values.",
     doc: "Layers: beauty (colors of the map), value (the numbers themselves), alpha (1 in the box of voxels, 0 beside it). \
-          Values beyond the range have the color of its nearer end. The colors are linear light, so that a PNG shows the map's own.",
+          Values beyond the range have the color of its nearer end. The colors are linear light, so that a PNG shows the map's own. \
+          The table has one row: middle of the upper left pixel, steps to the next pixel right and down, values of the map's two \
+          ends, and along the plane's normal its place and the ends of the box.",
     inputs: INPUTS,
-    outputs: &[PortSpec::new("image", PortType::Image, "colors, and the values as a layer")],
+    outputs: &[
+        PortSpec::new("image", PortType::Image, "colors, and the values as a layer"),
+        PortSpec::new("plane", PortType::Table, "where the pixels lie [m], and the values of the map's ends"),
+    ],
     params: &[
         GRID,
+        BEAM,
         ParamSpec::choice("axis", &["z", "x", "y", "free"])
             .doc("The plane's normal: an axis of the world, or free for `normal` and `origin`."),
         ParamSpec::float("position", 0.0)
@@ -49,6 +57,24 @@ static SPEC: NodeSpec = NodeSpec {
     ],
 };
 
+/// Columns of the table.
+const COLUMNS: &[&str] = &[
+    "first_x_m",
+    "first_y_m",
+    "first_z_m",
+    "right_x_m",
+    "right_y_m",
+    "right_z_m",
+    "down_x_m",
+    "down_y_m",
+    "down_z_m",
+    "low",
+    "high",
+    "position_m",
+    "from_m",
+    "to_m",
+];
+
 /// Where the pixels are.
 struct Plane {
     /// Middle of the upper left pixel in meters.
@@ -66,6 +92,11 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let (normal, origin) = plane(run, &scalar);
     let Plane { first, step: [right, down], size: [width, height] } =
         Plane::around(&scalar, normal, origin, run.params.i64("resolution") as usize);
+    let along = scalar.corners().map(|corner| corner.dot(normal));
+    let [from, to] = ends(along);
+    let mut row: Vec<f64> = [first, right, down].iter().flat_map(DVec3::to_array).collect();
+    row.extend([low, high, origin.dot(normal), from, to]);
+    let table = Table::new(COLUMNS, vec![row]);
     let pixels = (0..width * height).into_par_iter().map(|idx| {
         let position = first + (idx % width) as f64 * right + (idx / width) as f64 * down;
         let index = scalar.index_of(position);
@@ -81,7 +112,16 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let mut image = Image::new(width, height, pixels.par_iter().flat_map_iter(color).collect());
     image.insert(ALPHA, 1, pixels.iter().map(|(_, is_inside)| f32::from(u8::from(*is_inside))).collect());
     image.insert("value", 1, pixels.iter().map(|(value, _)| *value as f32).collect());
-    Ok(vec![Value::new(PortType::Image, image.bytes(), image)])
+    Ok(vec![
+        Value::new(PortType::Image, image.bytes(), image),
+        Value::new(PortType::Table, table.bytes(), table),
+    ])
+}
+
+/// The least and the largest.
+fn ends(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let all = values.into_iter();
+    all.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
 }
 
 /// Unit normal and a point.
@@ -107,11 +147,8 @@ impl Plane {
         let up = normal.cross(right);
         let corners =
             scalar.corners().map(|corner| [(corner - origin).dot(right), (corner - origin).dot(up)]);
-        let ends = |axis: usize| {
-            let along = corners.iter().map(|corner| corner[axis]);
-            along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-        };
-        let ([left, most_right], [bottom, top]) = (ends(0), ends(1));
+        let along = |axis: usize| ends(corners.iter().map(|corner| corner[axis]));
+        let ([left, most_right], [bottom, top]) = (along(0), along(1));
         let pixel = (most_right - left).max(top - bottom) / resolution as f64;
         // Less than a millionth of a pixel is rounding.
         let count = |span: f64| ((span / pixel - 1e-6).ceil() as usize).clamp(1, resolution);

@@ -15,7 +15,7 @@ pub const GROUPS: &str = r#"{"tyndall": 1, "nodes": {
     "bends": {"a.image -> b.image": [[540, -40]]},
     "frames": [{"title": "tones", "at": [270, -80], "size": [540, 340]}]}"#;
 
-fn double_click(harness: &mut Harness<Bench>, at: Pos2) {
+pub fn double_click(harness: &mut Harness<Bench>, at: Pos2) {
     harness.hover_at(at);
     harness.run_steps(30);
     for pressed in [true, false, true, false] {
@@ -26,7 +26,7 @@ fn double_click(harness: &mut Harness<Bench>, at: Pos2) {
     harness.run_steps(3);
 }
 
-fn document(harness: &Harness<Bench>) -> Document {
+pub fn document(harness: &Harness<Bench>) -> Document {
     harness.state().project.document().clone()
 }
 
@@ -84,6 +84,36 @@ fn nodes_are_muted_and_bypassed() {
     assert!(document(&harness).nodes["a"].bypass);
     undo(&mut harness);
     assert!(!document(&harness).nodes["a"].bypass);
+}
+
+#[test]
+fn nodes_in_a_group_are_muted_and_pasted() {
+    let mut other = window(SCENE);
+    click(&mut other, "node sun");
+    let text = copied(&mut other, Event::Copy).unwrap();
+    let mut harness = window(GROUPS);
+    let body = at(&harness, "node group");
+    double_click(&mut harness, body);
+    click(&mut harness, "node y");
+    press(&mut harness, Modifiers::NONE, Key::M);
+    assert!(document(&harness).node("group/y").unwrap().mute);
+    press(&mut harness, Modifiers::NONE, Key::B);
+    assert!(document(&harness).node("group/y").unwrap().bypass);
+    harness.hover_at(EMPTY);
+    harness.step();
+    harness.event(Event::Paste(text));
+    harness.run_steps(3);
+    assert_eq!(harness.state().selected(), ["group/sun"]);
+    assert_eq!(document(&harness).node("group/sun").unwrap().type_id, "sun");
+}
+
+#[test]
+fn a_group_is_saved_as_a_preset() {
+    let mut harness = window(GROUPS);
+    harness.get_by_label("node group").click_secondary();
+    harness.run_steps(3);
+    click(&mut harness, "Save as a preset…");
+    assert_eq!(harness.state().requests, [Request::SavePreset("group".to_owned())]);
 }
 
 #[test]

@@ -4,6 +4,8 @@ mod commands;
 mod groups;
 mod looks;
 mod pointer;
+mod ports;
+mod undo;
 mod wiring;
 
 use std::collections::HashMap;

@@ -191,9 +191,10 @@ fn press_plain(pos: Pos2, pressed: bool) -> Event {
 #[test]
 fn the_minimap_goes_there() {
     let mut harness = window(SCENE);
-    let map = rect(&harness, "minimap");
+    assert!(harness.query_by_label("minimap").is_none(), "all is seen already");
     harness.state_mut().canvas.view.zoom = 2.0;
-    harness.step();
+    harness.run_steps(2);
+    let map = rect(&harness, "minimap");
     let before = harness.state().canvas.view.pan;
     drag(&mut harness, map.center(), map.center() + vec2(30.0, 10.0));
     let after = harness.state().canvas.view.pan;
@@ -201,4 +202,50 @@ fn the_minimap_goes_there() {
     harness.state_mut().canvas.ask(super::super::Command::ToggleMinimap);
     harness.run_steps(2);
     assert!(harness.query_by_label("minimap").is_none());
+}
+
+#[test]
+fn all_stays_in_view_until_the_view_is_changed() {
+    let mut harness = window(SCENE);
+    let seen = |harness: &Harness<Bench>, size: Vec2| {
+        let screen = Rect::from_min_size(Pos2::ZERO, size);
+        ["sun", "moon", "march"]
+            .iter()
+            .all(|name| screen.contains_rect(rect(harness, &format!("node {name}"))))
+    };
+    let small = vec2(600.0, 300.0);
+    harness.set_size(small);
+    harness.run_steps(2);
+    assert!(seen(&harness, small));
+    // A picture makes its node taller.
+    let zoom = harness.state().canvas.view.zoom;
+    let context = harness.ctx.clone();
+    let picture = egui::ColorImage::filled([4, 4], egui::Color32::RED);
+    let texture = context.load_texture("small", picture, egui::TextureOptions::LINEAR);
+    harness.state_mut().thumbnails.insert("march".to_owned(), texture);
+    harness.run_steps(2);
+    assert!(seen(&harness, small) && harness.state().canvas.view.zoom < zoom);
+    // What the user chose stays.
+    harness.state_mut().canvas.view.zoom = 0.7;
+    harness.run_steps(2);
+    let view = harness.state().canvas.view;
+    harness.set_size(vec2(1000.0, 700.0));
+    harness.run_steps(2);
+    assert_eq!(harness.state().canvas.view, view);
+}
+
+#[test]
+fn a_node_is_brought_into_view() {
+    let mut harness = window(super::groups::GROUPS);
+    harness.state_mut().canvas.view.pan = vec2(-4000.0, 0.0);
+    harness.run_steps(2);
+    assert!(harness.query_by_label("node a").is_none());
+    harness.state_mut().canvas.reveal("a");
+    harness.run_steps(2);
+    let screen = Rect::from_min_size(Pos2::ZERO, vec2(1000.0, 700.0));
+    assert!(screen.contains_rect(rect(&harness, "node a")));
+    harness.state_mut().canvas.reveal("group/y");
+    harness.run_steps(2);
+    assert!(screen.contains_rect(rect(&harness, "node y")));
+    assert_eq!(harness.state().canvas.group(), "group");
 }

@@ -126,7 +126,7 @@ fn a_wire_in_the_empty_offers_what_fits() {
 }
 
 /// Two tone maps in a row and one aside.
-const TONES: &str = r#"{"tyndall": 1, "nodes": {"a": {"type": "tone_map"}, "b": {"type": "tone_map"},
+pub const TONES: &str = r#"{"tyndall": 1, "nodes": {"a": {"type": "tone_map"}, "b": {"type": "tone_map"},
     "c": {"type": "tone_map"}}, "wires": ["a.image -> b.image"],
     "layout": {"a": [0, 0], "b": [500, 0], "c": [250, 250]}}"#;
 
