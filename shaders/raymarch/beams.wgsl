@@ -113,7 +113,7 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
                 var peak_phase = peak_of(albedo * (tau_n + segment.tau_c), column);
                 if HAS_WINDOW {
                     let part = saturate((mu - beam.window.y) / max(beam.window.x - beam.window.y, 1e-6));
-                    let kept = 1.0 - part * part * (3.0 - 2.0 * part);
+                    let kept = 1.0 - beam.window.z * part * part * (3.0 - 2.0 * part);
                     let even = even_phase(mu);
                     phase = even + kept * (phase - even);
                     peak_phase = even + kept * (peak_phase - even);

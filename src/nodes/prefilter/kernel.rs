@@ -1,17 +1,17 @@
 //! What forward scattering does to an environment that is seen through x scatterings of the peak.
 //!
 //! B_x(mu) = e^−x Σ_{j≥1} x^j/j! w(mu) peak_j(mu) [1/sr], peak_j = f^−j [HG(g^j) − (1 + 3 g^j mu)/4π] +
-//! (1 + 3mu)/4π, w the window (DESIGN 6.5): 0 at the outer angle, 1 at the inner, smoothstep in mu between.
+//! (1 + 3mu)/4π, w the window (DESIGN 6.5): 0 at the outer angle, its share at the inner, smoothstep in mu between.
 //! As a convolution it is a factor for each degree l of spherical harmonics, 2π ∫ B_x P_l dmu. That of
-//! w = 1 is known: f^−j g^{jl} sums up to e^−x (e^{x g^{l−2}} − 1), and 1 − e^−x for l = 0 and 1. What the
-//! window takes off, (1 − w) peak_j, begins at the inner angle, where there is no peak: it is integrated
+//! w = 1 is known: f^−j g^{jl} sums up to e^−x (e^{x g^{l−2}} − 1), and 1 − e^−x for l = 0 and 1. What a
+//! window of share 1 takes off, (1 − w) peak_j, begins at the inner angle, where there is no peak: it is integrated
 //! by even samples of θ, in which it is periodic. Where f^j < 1e-10 peak_j is its limit, (1 + 3mu + 5P₂)/4π.
 //!
 //! Degrees end at the grid's. A peak that still has power there would ring, below zero next to a sun: all
 //! is smoothed by a Gaussian on the sphere (a factor e^{−s² l(l+1)/2}, positive, short of tail), s so that the
 //! first peak has fallen to e^−10 at the last degree: s = 0 for g up to 0.961 on the largest grid, 0.9° for
 //! 0.99 and at most 1°. What rings is then under 3e-4/sr. Kernels are negative by
-//! themselves, by up to 0.004/sr, inside the outer angle: there so much is taken off the ordinates.
+//! themselves, by up to 0.061/sr (60 to 120 degrees), inside the outer angle: there so much is taken off the ordinates.
 //! `turns` are three angles of B_{x/2}, for the eye that asks which way light comes when it is half way.
 //! Tested by values of the kernel itself, and by folding.
 
@@ -48,7 +48,7 @@ pub(super) fn factors(g: f64, window: Window, n_degrees: usize) -> Vec<[f64; N_L
     let variance = smoothing(g, n_degrees);
     for (l, factor) in factors.iter_mut().enumerate() {
         let kept = (-0.5 * variance * (l * (l + 1)) as f64).exp();
-        factor.iter_mut().for_each(|factor| *factor *= kept);
+        factor.iter_mut().for_each(|factor| *factor *= window.share * kept);
     }
     factors
 }
@@ -172,7 +172,7 @@ fn peak(j: usize, mu: f64, g: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const WINDOW: Window = Window { inner_deg: 30.0, outer_deg: 70.0 };
+    const WINDOW: Window = Window { inner_deg: 30.0, outer_deg: 70.0, share: 0.8 };
 
     /// A kernel from its factors.
     fn kernel(factors: &[[f64; N_LEVELS]], level: usize, mu: f64) -> f64 {
@@ -187,7 +187,7 @@ mod tests {
 
     fn windowed(mu: f64, g: f64) -> [f64; N_LEVELS] {
         let [inner, outer] = WINDOW.cosines();
-        peaks(mu, g).map(|peak| peak * smoothstep((mu - outer) / (inner - outer)))
+        peaks(mu, g).map(|peak| 0.8 * peak * smoothstep((mu - outer) / (inner - outer)))
     }
 
     #[test]
@@ -215,16 +215,16 @@ mod tests {
         // Hardly windowed and x small, the kernel is HG where HG is above its first moments: its share beyond
         // an angle is known, with F(mu) = (1-g²)/2g (1/(1-g) - 1/√(1+g²-2g mu)) of HG and (1-mu)/2 + 3g (1-mu²)/4
         // of the moments taken off, and (1-mu)/2 + 3(1-mu²)/4 times g² put back.
-        let (g, wide) = (0.8_f64, Window { inner_deg: 178.0, outer_deg: 179.0 });
+        let (g, wide) = (0.8_f64, Window { inner_deg: 178.0, outer_deg: 179.0, share: 0.5 });
         let f = g * g;
         let below = |mu: f64| {
             let hg = (1.0 - f) / (2.0 * g) * (1.0 / (1.0 - g) - 1.0 / (1.0 + f - 2.0 * g * mu).sqrt());
             let (even, tilted) = (0.5 * (1.0 - mu), 0.75 * (1.0 - mu * mu));
             hg - (even + g * tilted) + f * (even + tilted)
         };
-        // Where the kernel turns negative.
-        let samples = (0..200_000).map(|n| 1.0 - n as f64 * 1e-5);
-        let total = samples.map(below).fold(0.0, f64::max);
+        // Wherever the kernel is positive: it is so ahead, and a little behind.
+        let samples: Vec<f64> = (0..=200_000).map(|n| below(1.0 - n as f64 * 1e-5)).collect();
+        let total: f64 = samples.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0)).sum();
         let found = turns(g, wide);
         for (turn, share) in found[0].into_iter().zip([1.0 / 6.0, 0.5, 5.0 / 6.0]) {
             let found = below(f64::from(turn).cos()) / total;

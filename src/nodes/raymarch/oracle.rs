@@ -203,12 +203,12 @@ fn add_light(
 
 /// A phase function less what the environment's stack carries of it: W + (phase − W)(1 − w(mu)), W the part as
 /// even as the residual's sources, \[(1−f) + 3(g−f) mu\]₊/4π, and w a smooth step from 0 at the window's outer
-/// angle to 1 at its inner one.
+/// angle to its share at its inner one.
 fn without_forward(phase: f64, mu: f64, g: f64, window: Window) -> f64 {
     let [inner, outer] = window.cosines();
     let part = ((mu - outer) / (inner - outer)).clamp(0.0, 1.0);
     let even = ((1.0 - g * g) + 3.0 * (g - g * g) * mu).max(0.0) / (4.0 * PI);
-    even + (phase - even) * (1.0 - part * part * (3.0 - 2.0 * part))
+    even + (phase - even) * (1.0 - window.share * part * part * (3.0 - 2.0 * part))
 }
 
 /// r⁻² [1/m²] at the distance `r_m` from a point light, as a segment sees it: within the ball whose

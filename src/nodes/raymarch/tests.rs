@@ -195,7 +195,7 @@ fn parallel_light_is_seen_as_the_oracle_sees_it() {
 #[test]
 fn windowed_light_leaves_its_forward_share_to_the_stack() {
     let Some(gpu) = gpu() else { return };
-    let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0 });
+    let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0, share: 0.7 });
     // Towards the camera, aside, and away from it.
     let beams = [DVec3::new(-0.8, 0.5, -0.6), DVec3::new(0.3, -0.2, 0.9), DVec3::new(0.8, -0.5, 0.6)]
         .map(|direction| Beam { window, a0: 0.9, ..sun(direction, 1.0) });
@@ -214,7 +214,7 @@ fn wide_light_that_spreads_looks_as_if_it_did_not() {
     let medium = scene.medium(gpu);
     let ordinate =
         Ordinate { direction: DVec3::NEG_Y, irradiance: [3.0; 3], a0: 1.0, region: None, window: None };
-    let light = Ordinates { ordinates: vec![ordinate], ambient: [0.0; 3] };
+    let light = Ordinates { ordinates: vec![ordinate], ..Ordinates::default() };
     let light = Value::new(PortType::Ordinates, 0, light);
     let see = |peak: &str| {
         let inputs = [("medium", &medium), ("ordinates", &light)];
@@ -249,7 +249,7 @@ fn a_floor_is_lit_by_the_sun_and_seen_through_the_medium() {
     let floor = Value::new(PortType::Surface, 0, floor);
     let direction = DVec3::new(0.75f64.sqrt(), -0.5, 0.0);
     let ordinate = Ordinate { direction, irradiance: [3.0; 3], a0: 1.0, region: None, window: None };
-    let ordinates = Ordinates { ordinates: vec![ordinate], ambient: [0.0; 3] };
+    let ordinates = Ordinates { ordinates: vec![ordinate], ..Ordinates::default() };
     let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
     let inputs = [("medium", &medium), ("ordinates", &ordinates), ("surfaces", &floor)];
     let beams = output(gpu, "principal_propagation", json!({}), &inputs);
