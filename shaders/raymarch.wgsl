@@ -69,6 +69,8 @@ struct MarchParams {
     pad_2: u32,
     // Numbers of forward scatterings that the levels of the stack are for.
     stack_x: array<vec4f, 4>,
+    // For each level angles in radians that light has turned by after half of the scatterings.
+    stack_turns: array<vec4f, 16>,
     heat: Heat,
 }
 
@@ -112,8 +114,11 @@ const OPAQUE: f32 = 1e-5;
 // No surface within reach [cells].
 const FAR: f32 = 1e30;
 const STACK_LEVELS: u32 = 16u;
+const STACK_TURNS: u32 = 3u;
 // Optical depth of two steps that counts as none: its square, and its product with OPAQUE, are numbers still.
 const VOID: f32 = 1e-18;
+// Optical depth of a ray whose third power is still a number with all its digits.
+const HARDLY_ANY: f32 = 1e-6;
 
 // What this picture has. The rest is left out when the shader is compiled: on a device without real branches
 // it would cost as much as what is used.
@@ -151,6 +156,9 @@ struct Layers {
     tau: f32,
     // Sum of distance times what is absorbed there [cells].
     distance: f32,
+    // Integrals over the optical depth, of its powers 0, 1 and 2: of these, and of the distance times these.
+    depth_moments: vec3f,
+    distance_moments: vec3f,
 }
 
 // The residual lobe's radiance per unit of sigma_s*, towards the camera.
@@ -234,6 +242,14 @@ fn march(direction: vec3f, until: f32) -> Layers {
             layers.emission += length_m * lights;
         }
         layers.distance += dot(vec2f(sharp - half_way, half_way - end), t);
+        if HAS_STACK {
+            let at_near = layers.tau + 0.5 * step_tau.x;
+            let at_far = layers.tau + step_tau.x + 0.5 * step_tau.y;
+            let near_moments = step_tau.x * vec3f(1.0, at_near, at_near * at_near);
+            let far_moments = step_tau.y * vec3f(1.0, at_far, at_far * at_far);
+            layers.depth_moments += near_moments + far_moments;
+            layers.distance_moments += t.x * near_moments + t.y * far_moments;
+        }
         layers.tau += step_tau.x + step_tau.y;
         sharp = end;
         through *= kept_near * kept_far;
@@ -242,6 +258,14 @@ fn march(direction: vec3f, until: f32) -> Layers {
         }
     }
     return layers;
+}
+
+// Where a ray bends: about where a quarter of its matter is behind, the mean of the distance with the weight
+// (1 - tau/T)^2; in hardly any matter, in the middle of it.
+fn elbow_distance(layers: Layers) -> f32 {
+    let total = layers.tau;
+    let weights = select(vec3f(total * total, -2.0 * total, 1.0), vec3f(1.0, 0.0, 0.0), total < HARDLY_ANY);
+    return dot(weights, layers.distance_moments) / dot(weights, layers.depth_moments);
 }
 
 @compute @workgroup_size(8, 8, 1)
@@ -269,8 +293,9 @@ fn raymarch(@builtin(global_invocation_id) id: vec3u) {
         if surface.triangle == NO_SURFACE {
             let turned = params.world_from_index * direction;
             var forward = color * rgb(layers.forward + (through - sharp) * spectrum(params.ambient));
-            if HAS_STACK {
-                forward += environment_forward(turned, layers.tau);
+            if HAS_STACK && layers.tau > 0.0 {
+                let elbow = params.eye + elbow_distance(layers) * direction;
+                forward += environment_forward(direction, layers.tau, elbow);
                 // Where ordinates shine more evenly than the medium scatters the stack takes that back, and what
                 // is scattered once is the first that gives. Never more than there is.
                 single = max(single + min(forward, vec3f(0.0)), vec3f(0.0));

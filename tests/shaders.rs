@@ -6,7 +6,7 @@
 use std::f64::consts::PI;
 
 use tyndall::gpu::{Shader, shader_names, shader_text, wgsl_constant};
-use tyndall::light::environment::STACK_X;
+use tyndall::light::environment::{STACK_TURNS, STACK_X};
 use tyndall::optics::peak;
 
 /// A part of a shader that is there or not.
@@ -119,6 +119,7 @@ fn constants_are_those_of_rust() {
     assert_eq!(constant("raymarch.wgsl", "PEAK_SIZE"), table);
     assert_eq!(constant("raymarch.wgsl", "PEAK_X_MAX"), [peak::X_MAX]);
     assert_eq!(constant("raymarch.wgsl", "STACK_LEVELS"), [STACK_X.len() as f64]);
+    assert_eq!(constant("raymarch.wgsl", "STACK_TURNS"), [STACK_TURNS as f64]);
     assert_eq!(constant("lib/half.wgsl", "LARGEST_HALF"), [half::f16::MAX.to_f64()]);
     assert_eq!(constant("tone_map.wgsl", "F32_MAX"), [f64::from(f32::MAX)]);
     let f32s = |x: f64| [f64::from(x as f32)];

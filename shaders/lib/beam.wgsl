@@ -7,8 +7,9 @@ struct Beam {
     place: vec4f,
     // Irradiance [W/m2] or intensity [W/sr] in xyz, spread a0 in w.
     power: vec4f,
-    // Cosines of the angles up to which all, and from which none, of what it scatters comes from the
-    // environment's stack instead; 2 and 2 for a beam that keeps all. Then what a point faces, octahedral.
+    // Cosines of the angles up to which a share, and from which none, of what it scatters comes from the
+    // environment's stack instead; 2 and 2 for a beam that keeps all. Then of parallel light that share, of a point
+    // what it faces, octahedral.
     window: vec4f,
 }
 

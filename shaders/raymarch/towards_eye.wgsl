@@ -32,7 +32,7 @@ fn phases_towards_eye(beam: Beam, mu: f32, depth: f32) -> Phases {
         phases.peak = peak_of(spectrum(params.albedo) * depth, column);
         if HAS_WINDOW {
             let part = saturate((mu - beam.window.y) / max(beam.window.x - beam.window.y, 1e-6));
-            let kept = 1.0 - part * part * (3.0 - 2.0 * part);
+            let kept = 1.0 - beam.window.z * part * part * (3.0 - 2.0 * part);
             let even = even_phase(mu);
             phases.single = even + kept * (phases.single - even);
             phases.peak = even + kept * (phases.peak - even);

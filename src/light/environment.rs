@@ -3,11 +3,17 @@
 //! Maps follow OpenEXR's lat-long convention: longitude π − 2πu, 0 is +Z at the picture's center, +X at
 //! u = 1/4, +Y on the top row; bilinear between texel centers, around the seam. `rotate_y` turns the map
 //! right-handed about +Y: +90° takes what was in +Z to +X. Radiance in W/(m² sr), linear Rec. 709.
+//!
+//! A sun in a map is not one of many texels: it is a light of its own (`suns`), that neither a region of the
+//! map nor a blurred copy of it stands for.
 
+use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
 use glam::DVec3;
+
+use crate::optics::spectrum::luminance;
 
 /// Radiance for each direction.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,9 +41,17 @@ pub struct Map {
     pub stack: Option<Arc<Stack>>,
 }
 
+/// A sun's texels are brighter than the mean of the map by more than this: skies and lamps reach some tens.
+pub const SUN_CONTRAST: f64 = 100.0;
+/// Less of the map's light than this is no sun: a cut into 32 regions would not give it one.
+pub const SUN_SHARE: f64 = 1.0 / 32.0;
+
 /// Numbers of forward scatterings that the levels of a [`Stack`] are for.
 pub const STACK_X: [f64; 16] =
     [0.0, 0.125, 0.25, 0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0];
+
+/// Angles of [`Stack::turns`].
+pub const STACK_TURNS: usize = 3;
 
 /// What of a map shines forward through x scatterings, for each x of [`STACK_X`].
 #[derive(Debug, Clone, PartialEq)]
@@ -48,6 +62,9 @@ pub struct Stack {
     pub height: usize,
     /// Level after level, each row by row as the map's own; times `scale`, before `rotate_y`.
     pub texels: Vec<[f32; 3]>,
+    /// Angles in radians that light has turned by after half of the scatterings: the middles of parts of even
+    /// power.
+    pub turns: [[f32; STACK_TURNS]; STACK_X.len()],
 }
 
 impl Environment {
@@ -76,6 +93,43 @@ impl Map {
         let edge = |row: usize| (0.5 * PI - PI * row as f64 / self.height as f64).sin();
         2.0 * PI / self.width as f64 * (edge(row) - edge(row + 1))
     }
+
+    /// The suns of the map, each the indices of its texels in order: texels that touch, each brighter than
+    /// [`SUN_CONTRAST`] times the map's mean luminance, and together more than [`SUN_SHARE`] of its light. All
+    /// suns together fill less than 1/[`SUN_CONTRAST`] of the directions.
+    pub fn suns(&self) -> Vec<Vec<usize>> {
+        let row_light = |row: usize| {
+            let row_texels = &self.texels[row * self.width..(row + 1) * self.width];
+            row_texels.iter().map(|texel| luminance(texel.map(f64::from))).sum::<f64>()
+                * self.solid_angle(row)
+        };
+        let light: f64 = (0..self.height).map(row_light).sum();
+        let threshold = SUN_CONTRAST * light / (4.0 * PI);
+        let radiance = |idx: usize| luminance(self.texels[idx].map(f64::from));
+        let mut waiting: BTreeSet<usize> =
+            (0..self.texels.len()).filter(|idx| radiance(*idx) > threshold).collect();
+        let mut suns = Vec::new();
+        while let Some(first) = waiting.pop_first() {
+            let mut sun = vec![first];
+            let mut n_seen = 0;
+            while let Some(idx) = sun.get(n_seen).copied() {
+                n_seen += 1;
+                let (row, column) = (idx / self.width, idx % self.width);
+                for row in row.saturating_sub(1)..(row + 2).min(self.height) {
+                    for across in [self.width - 1, 0, 1] {
+                        let neighbor = row * self.width + (column + across) % self.width;
+                        sun.extend(waiting.take(&neighbor));
+                    }
+                }
+            }
+            let of_sun: f64 = sun.iter().map(|idx| radiance(*idx) * self.solid_angle(idx / self.width)).sum();
+            if of_sun > SUN_SHARE * light {
+                sun.sort_unstable();
+                suns.push(sun);
+            }
+        }
+        suns
+    }
 }
 
 #[cfg(test)]
@@ -100,6 +154,29 @@ mod tests {
     fn solid_angles_fill_the_sphere() {
         let sum: f64 = (0..4).map(|row| 8.0 * map(0.0).solid_angle(row)).sum();
         assert!((sum - 4.0 * PI).abs() < 1e-13);
+    }
+
+    #[test]
+    fn suns_are_bright_small_and_a_good_part_of_the_light() {
+        let (width, height) = (64, 32);
+        let lit = |bright: &[(usize, f32)]| {
+            let mut texels = vec![[1.0; 3]; width * height];
+            bright.iter().for_each(|(idx, l)| texels[*idx] = [*l; 3]);
+            Map { width, height, texels: Arc::new(texels), ..map(0.3) }.suns()
+        };
+        assert!(lit(&[]).is_empty() && map(0.0).suns().is_empty());
+        // Two texels that touch over the seam, across a corner, and one apart.
+        let (left, right, apart) = (10 * width, 11 * width + width - 1, 20 * width + 7);
+        let all = [(left, 3e4), (right, 2e4), (apart, 3e4)];
+        assert_eq!(lit(&all), vec![vec![left, right], vec![apart]]);
+        // 90 is not bright enough; and a texel next to the pole, bright enough, has 0.5 % of all light.
+        assert!(lit(&[(left, 90.0)]).is_empty());
+        assert_eq!(lit(&[all[0], all[1], (7, 4e3)]), vec![vec![left, right]]);
+        // Nothing that is wider than a hundredth of the sphere.
+        let cap: Vec<_> = (0..2 * width).map(|idx| (idx, 1e6)).collect();
+        assert!(lit(&cap).len() <= 1);
+        let belt: Vec<_> = (14 * width..18 * width).map(|idx| (idx, 1e6)).collect();
+        assert!(lit(&belt).is_empty());
     }
 
     #[test]

@@ -58,14 +58,16 @@ pub struct Ordinate {
     pub window: Option<Window>,
 }
 
-/// The angles between which light goes over from an environment's stack to its ordinates: all of what is
-/// scattered by less than `inner_deg` is the stack's, none of what is scattered by more than `outer_deg`.
+/// What of the light of an environment's regions comes from its stack, not from ordinates: `share` of what is
+/// scattered by less than `inner_deg`, none of what is scattered by more than `outer_deg`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Window {
-    /// Where the ordinates' share begins in degrees.
+    /// Where the stack's share begins to fall in degrees.
     pub inner_deg: f64,
     /// Where the stack's share ends in degrees.
     pub outer_deg: f64,
+    /// The stack's share within, 0..=1.
+    pub share: f64,
 }
 
 impl Window {
@@ -82,6 +84,9 @@ pub struct Ordinates {
     pub ordinates: Vec<Ordinate>,
     /// Radiance that comes from everywhere [W/(m² sr)].
     pub ambient: [f64; 3],
+    /// Into how many regions the environment was split, of which black ones have no beam; while one split fades into
+    /// another, each. 0 where nothing was split.
+    pub n_regions: usize,
 }
 
 /// The scale and the chromaticity of a color: its largest component, and the color over it.

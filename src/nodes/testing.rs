@@ -230,7 +230,7 @@ impl Scene {
                 window: light.window,
             }),
         });
-        let ordinates = Ordinates { ordinates: ordinates.collect(), ambient };
+        let ordinates = Ordinates { ordinates: ordinates.collect(), ambient, ..Ordinates::default() };
         let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
         inputs.push(("ordinates", &ordinates));
         full_output(gpu, "principal_propagation", Json::Object(Map::new()), &inputs)

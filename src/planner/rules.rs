@@ -176,17 +176,28 @@ pub fn bounce(
     }
 }
 
-/// Whether an environment shines through a medium by the blurred levels of `prefilter`.
-pub fn stack(g: f64, is_map: bool) -> (bool, Decision) {
+/// A smaller share of what the stack may carry than this is left to the ordinates as well: measured, it betters a
+/// picture by 0.3 % at most, and costs its ways through the medium.
+const LEAST_STACK: f64 = 0.1;
+
+/// Whether an environment shines through a medium by the blurred levels of `prefilter`. `share` of what they may
+/// carry is what is best: more of it the farther ordinates are apart, and the less light turns in a scattering.
+pub fn stack(g: f64, is_map: bool, share: f64, prune: bool) -> (bool, Decision) {
     const RULE: &str = "stack";
     let what = "blurred levels of the environment";
     let data = format!("g = {}, {}", number(g), if is_map { "a map" } else { "a constant" });
-    match (g > 0.0, is_map) {
-        (true, true) => {
-            (true, Decision::kept(RULE, what, "its detail is seen through forward scattering", data))
+    let left_out = |reason: &str, data: String| (false, Decision::left_out(RULE, what, reason, data));
+    match () {
+        () if g <= 0.0 => left_out("nothing is scattered forward by little", data),
+        () if !is_map => left_out("a constant has no detail", data),
+        () if share < LEAST_STACK && prune => {
+            let reason = "a scattering blurs more than ordinates are apart: they show all of the detail";
+            left_out(reason, format!("{data}, best share {}", number(share)))
         }
-        (true, false) => (false, Decision::left_out(RULE, what, "a constant has no detail", data)),
-        (false, _) => (false, Decision::left_out(RULE, what, "nothing is scattered forward by little", data)),
+        () => {
+            let reason = "its detail is seen through forward scattering";
+            (true, Decision::kept(RULE, what, reason, format!("{data}, share {}", number(share))))
+        }
     }
 }
 
@@ -440,6 +451,18 @@ mod tests {
         assert!(found(&lit, 0.0, false) && !found(&[], 0.5, false));
         let data = bounce(&lit, &[[0.5; 3]], 8, true).1.data;
         assert_eq!(data, "1 beam with light; 1 of 1 surface reflect");
+    }
+
+    #[test]
+    fn a_stack_that_adds_nothing_is_left_out() {
+        let found = |g, is_map, share| stack(g, is_map, share, true).0;
+        assert!(found(0.5, true, 0.11) && !found(0.5, true, 0.05) && stack(0.5, true, 0.05, false).0);
+        assert!(!found(0.0, true, 1.0) && !found(-0.5, true, 1.0) && !found(0.5, false, 1.0));
+        let Decision { reason, data, .. } = stack(0.5, true, 0.05, true).1;
+        assert!(
+            reason.contains("blurs more") && data == "g = 0.5, a map, best share 0.05",
+            "{reason}: {data}"
+        );
     }
 
     #[test]

@@ -91,8 +91,8 @@ mirror! {
         place: [f32; 4],
         /// Power of three channels, and a0.
         power: [f32; 4],
-        /// Cosines of the window's inner and outer angle; 2 and 2, which no cosine reaches, for none. Then what a
-        /// point faces, octahedral.
+        /// Cosines of the window's inner and outer angle; 2 and 2, which no cosine reaches, for none. Then of
+        /// parallel light the window's share and nothing, of a point what it faces, octahedral.
         window: [f32; 4],
     }
 }
@@ -104,13 +104,14 @@ impl Beam {
             Place::Parallel(direction) => (direction, 0.0),
             Place::Point(position) => (position, if self.facing.is_some() { 2.0 } else { 1.0 }),
         };
-        let facing = self.facing.map_or([0.0; 2], octahedral::from_direction);
+        let share = [self.window.map_or(0.0, |window| window.share), 0.0];
+        let rest = self.facing.map_or(share, octahedral::from_direction);
         let power = power.map(|p| p as f32);
         let [inner, outer] = self.window.map_or([2.0; 2], Window::cosines);
         BeamTexel {
             place: place.as_vec3().extend(point).to_array(),
             power: [power[0], power[1], power[2], self.a0 as f32],
-            window: [inner as f32, outer as f32, facing[0] as f32, facing[1] as f32],
+            window: [inner as f32, outer as f32, rest[0] as f32, rest[1] as f32],
         }
     }
 }

@@ -147,7 +147,8 @@ fn what_the_stack_takes_back_is_taken_from_single_scattering() {
     let beams = scene.propagate(gpu, &medium, &[sun(DVec3::new(0.4, -0.3, 0.8), 3.0)], [0.0; 3]);
     let seen = |taken: Option<f32>| {
         let texels = vec![[-taken.unwrap_or(0.0); 3]; 16 * 4 * 2];
-        let stack = taken.map(|_| Arc::new(Stack { width: 4, height: 2, texels }));
+        let stack =
+            taken.map(|_| Arc::new(Stack { width: 4, height: 2, texels, turns: [[0.2, 0.5, 1.0]; 16] }));
         let texels = Arc::new(vec![[0.0; 3]; 8]);
         let map = Map { width: 4, height: 2, texels, scale: 1.0, rotate_y: 0.0, stack };
         let sky = Value::new(PortType::Environment, 0, Environment::Map(map));

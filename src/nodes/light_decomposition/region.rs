@@ -1,6 +1,7 @@
 //! Regions of an environment, and the ordinates that stand for them: what all methods share.
 //!
-//! Only what a map has beyond its minimum is split. Of a region: E = Σ L dω per channel, direction and
+//! Only what a map has beyond its minimum is split, suns apart: they are ordinates as they are, so that no region
+//! is drawn towards one. Of a region: E = Σ L dω per channel, direction and
 //! spread those of the luminance-weighted mean direction, so that the regions' luminance times spread times
 //! direction add up to the map's Σ L ω dω. Units: radiance [W/(m² sr)], irradiance [W/m²]. Black regions are
 //! left out; of a region that shines from all sides alike the direction is noise: its light joins the
@@ -25,6 +26,8 @@ pub(super) struct Excess<'a> {
     minimum: [f64; 3],
     /// Towards each column on the horizon.
     meridians: Vec<DVec3>,
+    /// Texels that are lights of their own, in order.
+    set_aside: Vec<usize>,
 }
 
 /// Light summed up.
@@ -40,12 +43,37 @@ impl<'a> Excess<'a> {
     /// Of a map with this minimum.
     pub(super) fn new(map: &'a Map, minimum: [f64; 3]) -> Self {
         let meridian = |column| map.direction((column as f64 + 0.5) / map.width as f64, 0.5);
-        Self { map, minimum, meridians: (0..map.width).map(meridian).collect() }
+        Self { map, minimum, meridians: (0..map.width).map(meridian).collect(), set_aside: Vec::new() }
     }
 
-    /// Radiance of a texel.
+    /// Takes the map's suns out; gives each as an ordinate that is no region.
+    pub(super) fn take_suns(&mut self) -> Vec<Ordinate> {
+        let suns = self.map.suns();
+        let ordinate = |sun: &Vec<usize>| {
+            let mut sum = Region::default();
+            for idx in sun {
+                let (row, column) = (idx / self.map.width, idx % self.map.width);
+                self.texels(row, column..column + 1).for_each(|texel| sum.add(&texel));
+            }
+            sum.ordinate().map(|ordinate| Ordinate {
+                a0: ordinate.region.unwrap_or(1.0),
+                region: None,
+                ..ordinate
+            })
+        };
+        let ordinates = suns.iter().filter_map(ordinate).collect();
+        self.set_aside = suns.into_iter().flatten().collect();
+        self.set_aside.sort_unstable();
+        ordinates
+    }
+
+    /// Radiance of a texel; black where it is a light of its own.
     pub(super) fn radiance(&self, row: usize, column: usize) -> [f64; 3] {
-        let texel = self.map.texels[row * self.map.width + column];
+        let idx = row * self.map.width + column;
+        if self.set_aside.binary_search(&idx).is_ok() {
+            return [0.0; 3];
+        }
+        let texel = self.map.texels[idx];
         std::array::from_fn(|c| f64::from(texel[c]) * self.map.scale - self.minimum[c])
     }
 

@@ -93,3 +93,39 @@ fn constants_are_ambient_and_maps_keep_their_power() {
         assert!((power / expected - 1.0).abs() < 1e-13, "{method}: {power} against {expected}");
     }
 }
+
+#[test]
+fn a_sun_in_a_map_is_an_ordinate_of_its_own() {
+    let Some(gpu) = gpu() else { return };
+    let (width, height) = (64, 32);
+    let lit = |sun: f32| {
+        let mut texels: Vec<[f32; 3]> =
+            (0..width * height).map(|idx| [0.2 + (idx % 7) as f32 * 0.1; 3]).collect();
+        (0..2).for_each(|n| texels[9 * width + 20 + n] = [sun, 0.5 * sun, 0.25 * sun]);
+        Map { width, height, texels: Arc::new(texels), scale: 2.0, rotate_y: 0.3, stack: None }
+    };
+    let map = lit(1e4);
+    let towards = |column: f64| map.direction(column / width as f64, 9.5 / height as f64);
+    let towards = (towards(20.5) + towards(21.5)).normalize();
+    let irradiance = 2.0 * 2.0 * (1e4 - 0.2) * map.solid_angle(9);
+    let sky = Value::new(PortType::Environment, 0, Environment::Map(map));
+    for method in ["median_cut", "uniform"] {
+        let params = json!({ "count": 8, "method": method });
+        let light = output(gpu, "light_decomposition", params, &[("environment", &sky)]);
+        let light: &Ordinates = light.get();
+        assert!(light.ordinates.len() <= 8 && light.n_regions == 7);
+        let suns: Vec<_> = light.ordinates.iter().filter(|ordinate| ordinate.region.is_none()).collect();
+        assert_eq!(suns.len(), 1, "{method}");
+        // Texels of f32, two of them.
+        assert!((suns[0].irradiance[0] / irradiance - 1.0).abs() < 1e-6, "{suns:?} {irradiance}");
+        assert!((suns[0].direction + towards).length() < 1e-12 && suns[0].a0 < 1.0 && suns[0].a0 > 0.99);
+        // What is left is a sky: at most 1.6 from everywhere.
+        let rest = light.ordinates.iter().filter(|ordinate| ordinate.region.is_some());
+        assert!(rest.map(|ordinate| ordinate.irradiance[0]).sum::<f64>() < 1.6 * 4.0 * PI);
+    }
+    // A bright texel is none.
+    let sky = Value::new(PortType::Environment, 0, Environment::Map(lit(40.0)));
+    let light = output(gpu, "light_decomposition", json!({ "count": 8 }), &[("environment", &sky)]);
+    let light: &Ordinates = light.get();
+    assert!(light.n_regions == 8 && light.ordinates.iter().all(|ordinate| ordinate.region.is_some()));
+}

@@ -1,17 +1,18 @@
 //! What forward scattering does to an environment that is seen through x scatterings of the peak.
 //!
 //! B_x(mu) = e^−x Σ_{j≥1} x^j/j! w(mu) peak_j(mu) [1/sr], peak_j = f^−j [HG(g^j) − (1 + 3 g^j mu)/4π] +
-//! (1 + 3mu)/4π, w the window (DESIGN 6.5): 0 at the outer angle, 1 at the inner, smoothstep in mu between.
+//! (1 + 3mu)/4π, w the window (DESIGN 6.5): 0 at the outer angle, its share at the inner, smoothstep in mu between.
 //! As a convolution it is a factor for each degree l of spherical harmonics, 2π ∫ B_x P_l dmu. That of
-//! w = 1 is known: f^−j g^{jl} sums up to e^−x (e^{x g^{l−2}} − 1), and 1 − e^−x for l = 0 and 1. What the
-//! window takes off, (1 − w) peak_j, begins at the inner angle, where there is no peak: it is integrated
+//! w = 1 is known: f^−j g^{jl} sums up to e^−x (e^{x g^{l−2}} − 1), and 1 − e^−x for l = 0 and 1. What a
+//! window of share 1 takes off, (1 − w) peak_j, begins at the inner angle, where there is no peak: it is integrated
 //! by even samples of θ, in which it is periodic. Where f^j < 1e-10 peak_j is its limit, (1 + 3mu + 5P₂)/4π.
 //!
 //! Degrees end at the grid's. A peak that still has power there would ring, below zero next to a sun: all
 //! is smoothed by a Gaussian on the sphere (a factor e^{−s² l(l+1)/2}, positive, short of tail), s so that the
 //! first peak has fallen to e^−10 at the last degree: s = 0 for g up to 0.961 on the largest grid, 0.9° for
 //! 0.99 and at most 1°. What rings is then under 3e-4/sr. Kernels are negative by
-//! themselves, by up to 0.004/sr, inside the outer angle: there so much is taken off the ordinates.
+//! themselves, by up to 0.061/sr (60 to 120 degrees), inside the outer angle: there so much is taken off the ordinates.
+//! `turns` are three angles of B_{x/2}, for the eye that asks which way light comes when it is half way.
 //! Tested by values of the kernel itself, and by folding.
 
 use std::f64::consts::PI;
@@ -19,7 +20,7 @@ use std::f64::consts::PI;
 use rayon::prelude::*;
 
 use crate::light::Window;
-use crate::light::environment::STACK_X;
+use crate::light::environment::{STACK_TURNS, STACK_X};
 use crate::optics::phase::hg;
 
 /// Levels of the stack.
@@ -47,7 +48,7 @@ pub(super) fn factors(g: f64, window: Window, n_degrees: usize) -> Vec<[f64; N_L
     let variance = smoothing(g, n_degrees);
     for (l, factor) in factors.iter_mut().enumerate() {
         let kept = (-0.5 * variance * (l * (l + 1)) as f64).exp();
-        factor.iter_mut().for_each(|factor| *factor *= kept);
+        factor.iter_mut().for_each(|factor| *factor *= window.share * kept);
     }
     factors
 }
@@ -98,14 +99,57 @@ fn smoothstep(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
+/// The angles [rad] at the middles of even parts of what half of the scatterings of each level do, w B_{x/2} where
+/// it is positive.
+pub(super) fn turns(g: f64, window: Window) -> [[f32; STACK_TURNS]; N_LEVELS] {
+    let [cos_inner, cos_outer] = window.cosines();
+    // Nothing is scattered at x = 0: the limit, once.
+    let halves = STACK_X.map(|x| 0.5 * x.max(1e-3));
+    // Finer towards the peak.
+    let angle = |idx: usize| PI * (idx as f64 / N_SAMPLES as f64).powi(2);
+    let parts: Vec<[f64; N_LEVELS]> = (0..N_SAMPLES)
+        .into_par_iter()
+        .map(|idx| {
+            let (low, high) = (angle(idx), angle(idx + 1));
+            let mu = (0.5 * (low + high)).cos();
+            let kept = smoothstep((mu - cos_outer) / (cos_inner - cos_outer));
+            let area = low.cos() - high.cos();
+            if kept > 0.0 {
+                folded(mu, g, &halves).map(|b| (kept * area * b).max(0.0))
+            } else {
+                [0.0; N_LEVELS]
+            }
+        })
+        .collect();
+    std::array::from_fn(|level| {
+        let total: f64 = parts.iter().map(|part| part[level]).sum();
+        std::array::from_fn(|turn| {
+            let mut rest = (turn as f64 + 0.5) / STACK_TURNS as f64 * total;
+            let idx = parts.iter().position(|part| {
+                rest -= part[level];
+                rest <= 0.0
+            });
+            // A window that lets nothing through turns nothing.
+            idx.map_or(0.0, |idx| {
+                angle(idx + 1) + rest / parts[idx][level].max(1e-300) * (angle(idx + 1) - angle(idx))
+            }) as f32
+        })
+    })
+}
+
 /// e^−x Σ_j x^j/j! peak_j for each level.
 fn peaks(mu: f64, g: f64) -> [f64; N_LEVELS] {
-    let mut weights = STACK_X.map(|x| (-x).exp());
+    folded(mu, g, &STACK_X)
+}
+
+/// The same for each of these x.
+fn folded(mu: f64, g: f64, xs: &[f64; N_LEVELS]) -> [f64; N_LEVELS] {
+    let mut weights = xs.map(|x| (-x).exp());
     let mut sums = [0.0; N_LEVELS];
     for j in 1..=N_FOLDS {
         let peak = peak(j, mu, g);
         for level in 0..N_LEVELS {
-            weights[level] *= STACK_X[level] / j as f64;
+            weights[level] *= xs[level] / j as f64;
             sums[level] += weights[level] * peak;
         }
     }
@@ -128,7 +172,7 @@ fn peak(j: usize, mu: f64, g: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const WINDOW: Window = Window { inner_deg: 30.0, outer_deg: 70.0 };
+    const WINDOW: Window = Window { inner_deg: 30.0, outer_deg: 70.0, share: 0.8 };
 
     /// A kernel from its factors.
     fn kernel(factors: &[[f64; N_LEVELS]], level: usize, mu: f64) -> f64 {
@@ -143,7 +187,7 @@ mod tests {
 
     fn windowed(mu: f64, g: f64) -> [f64; N_LEVELS] {
         let [inner, outer] = WINDOW.cosines();
-        peaks(mu, g).map(|peak| peak * smoothstep((mu - outer) / (inner - outer)))
+        peaks(mu, g).map(|peak| 0.8 * peak * smoothstep((mu - outer) / (inner - outer)))
     }
 
     #[test]
@@ -163,6 +207,38 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    #[test]
+    fn turns_are_the_angles_of_even_parts() {
+        // Hardly windowed and x small, the kernel is HG where HG is above its first moments: its share beyond
+        // an angle is known, with F(mu) = (1-g²)/2g (1/(1-g) - 1/√(1+g²-2g mu)) of HG and (1-mu)/2 + 3g (1-mu²)/4
+        // of the moments taken off, and (1-mu)/2 + 3(1-mu²)/4 times g² put back.
+        let (g, wide) = (0.8_f64, Window { inner_deg: 178.0, outer_deg: 179.0, share: 0.5 });
+        let f = g * g;
+        let below = |mu: f64| {
+            let hg = (1.0 - f) / (2.0 * g) * (1.0 / (1.0 - g) - 1.0 / (1.0 + f - 2.0 * g * mu).sqrt());
+            let (even, tilted) = (0.5 * (1.0 - mu), 0.75 * (1.0 - mu * mu));
+            hg - (even + g * tilted) + f * (even + tilted)
+        };
+        // Wherever the kernel is positive: it is so ahead, and a little behind.
+        let samples: Vec<f64> = (0..=200_000).map(|n| below(1.0 - n as f64 * 1e-5)).collect();
+        let total: f64 = samples.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0)).sum();
+        let found = turns(g, wide);
+        for (turn, share) in found[0].into_iter().zip([1.0 / 6.0, 0.5, 5.0 / 6.0]) {
+            let found = below(f64::from(turn).cos()) / total;
+            // Midpoints of steps of some 3e-4 of the angle, and 5e-4 of twice scattered.
+            assert!((found - share).abs() < 1e-3, "{found} against {share}");
+        }
+        // More scatterings turn light further; the window ends it.
+        for g in [0.3, 0.9, 0.999] {
+            let found = turns(g, WINDOW);
+            assert!(
+                found.iter().all(|turns| turns.is_sorted() && turns[2].to_degrees() <= 70.1),
+                "{found:?}"
+            );
+            assert!(found.windows(2).all(|pair| pair[1][1] >= pair[0][1] - 1e-3), "{found:?}");
         }
     }
 

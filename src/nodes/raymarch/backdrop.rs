@@ -1,7 +1,8 @@
 //! What stands behind the medium, and what of it comes through.
 //!
 //! A constant or a lat-long map is seen through the medium by exp(-tau); with a stack (`prefilter`), what the
-//! medium scatters forward out of the map is added (DESIGN 6.5).
+//! medium scatters forward out of the map is added (DESIGN 6.5), more of it from where the medium is thin:
+//! `shaders/raymarch/environment.wgsl`, whose oracle is `bend.rs`.
 
 use crate::gpu::{Format, Gpu, GpuError, Texture};
 use crate::light::environment::{Environment, STACK_X, Stack};
@@ -20,6 +21,8 @@ pub(super) struct Backdrop {
     pub(super) stack: Texture,
     /// Whether the levels are there.
     pub(super) has_stack: bool,
+    /// Of each level, as in [`Stack`].
+    pub(super) turns: [[f32; 4]; STACK_X.len()],
 }
 
 const REMEDY: &str = "use a smaller picture as environment";
@@ -54,6 +57,8 @@ impl Backdrop {
             map: texture,
             stack: stack_texture(gpu, stack)?,
             has_stack: stack.is_some(),
+            turns: stack
+                .map_or([[0.0; 4]; STACK_X.len()], |stack| stack.turns.map(|[a, b, c]| [a, b, c, 0.0])),
         })
     }
 }

@@ -33,7 +33,7 @@ pub(super) const KIND: NodeKind =
 
 static SPEC: NodeSpec = NodeSpec {
     id: "raymarch",
-    version: 2,
+    version: 3,
     category: Category::Image,
     purpose: "Marches the camera's rays through the medium: the picture.",
     doc: "Layers: beauty, alpha (coverage), depth (mean distance of what is seen [m], 0 where nothing is), single (light scattered \
@@ -101,6 +101,7 @@ mirror! {
         pad_1: u32,
         pad_2: u32,
         stack_x: [[f32; 4]; 4],
+        stack_turns: [[f32; 4]; 16],
         heat: Heat,
     }
 }
@@ -304,6 +305,7 @@ fn params(
         pad_1: 0,
         pad_2: 0,
         stack_x: std::array::from_fn(|row| std::array::from_fn(|n| STACK_X[4 * row + n] as f32)),
+        stack_turns: backdrop.turns,
         heat: medium.emission.as_ref().map_or(bytemuck::Zeroable::zeroed(), |emission| emission.heat),
     })
 }

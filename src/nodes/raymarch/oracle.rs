@@ -13,9 +13,10 @@
 //! In: index space as in `oracle_scene.rs`; sigma_t trilinear, zero outside; tau of the light
 //! trilinear between corners; the residual trilinear between centers; emission at the grids' own
 //! voxels. Out: radiance by layers [W/(m² sr)].
-//! Limits: one table of K for all spreads a0; no environment stack; near a point light r⁻²
+//! Limits: one table of K for all spreads a0; of an environment's stack only the bent ways (`bend.rs`); near a point light r⁻²
 //! is that of the pair. Tested with closed forms; as a chain in `oracle_scene/tests.rs`.
 
+pub mod bend;
 pub mod sums;
 
 use std::f64::consts::PI;
@@ -75,6 +76,8 @@ pub struct Marched {
     pub background: f64,
     /// Unscaled optical depth of the ray.
     pub tau: f64,
+    /// ∫ (1 − tau/T)² t dtau over ∫ (1 − tau/T)² dtau [cells]: where an environment's light bends.
+    pub elbow: f64,
 }
 
 impl Marched {
@@ -121,6 +124,7 @@ fn march_with(
 ) -> Marched {
     let mut seen = Marched::default();
     let scaled = scene.medium.scaled();
+    let mut depths = Vec::new();
     if let Some([start, end]) = interval {
         let n_pairs = (0.5 * (end - start) / scene.step).ceil();
         let step = 0.5 * (end - start) / n_pairs;
@@ -145,6 +149,7 @@ fn march_with(
                     *sum += reach(scene.least_k) * value;
                 }
                 seen.tau += depth;
+                depths.push([depth, seen.tau - 0.5 * depth, t]);
             }
             if toward[0] > 0.0 {
                 segment.tau_c = toward[2] / toward[0];
@@ -156,6 +161,10 @@ fn march_with(
             }
         }
     }
+    let weights = || depths.iter().map(|[depth, tau, t]| (depth * (1.0 - tau / seen.tau).powi(2), t));
+    let elbow = weights().map(|(weight, t)| weight * t).sum::<f64>()
+        / weights().map(|(weight, _)| weight).sum::<f64>();
+    seen.elbow = if seen.tau > 0.0 { elbow } else { 0.0 };
     seen.background = scene.ambient * (-scaled.k * seen.tau).exp();
     seen
 }
@@ -224,12 +233,12 @@ fn residual_at(scene: &MarchScene, p: DVec3, ray_direction: DVec3) -> f64 {
 
 /// A phase function less what the environment's stack carries of it: W + (phase − W)(1 − w(mu)), W the part as
 /// even as the residual's sources, \[(1−f) + 3(g−f) mu\]₊/4π, and w a smooth step from 0 at the window's outer
-/// angle to 1 at its inner one.
+/// angle to its share at its inner one.
 fn without_forward(phase: f64, mu: f64, g: f64, window: Window) -> f64 {
     let [inner, outer] = window.cosines();
     let part = ((mu - outer) / (inner - outer)).clamp(0.0, 1.0);
     let even = ((1.0 - g * g) + 3.0 * (g - g * g) * mu).max(0.0) / (4.0 * PI);
-    even + (phase - even) * (1.0 - part * part * (3.0 - 2.0 * part))
+    even + (phase - even) * (1.0 - window.share * part * part * (3.0 - 2.0 * part))
 }
 
 /// r⁻² [1/m²] at the distance `r_m` from a point light, as a segment sees it: within the ball whose

@@ -1,5 +1,4 @@
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 use glam::{DVec3, DVec4};
 use serde_json::json;
@@ -13,7 +12,7 @@ use crate::geometry::Mesh;
 use crate::gpu::Gpu;
 use crate::graph::{PortType, Value};
 use crate::image::{ALPHA, BEAUTY, DEPTH, Image};
-use crate::light::environment::{Environment, Map, STACK_X, Stack};
+use crate::light::environment::Environment;
 use crate::light::{Ordinate, Ordinates, Window};
 use crate::nodes::oracle_scene::OracleBeam;
 use crate::nodes::testing::{
@@ -21,6 +20,7 @@ use crate::nodes::testing::{
     output, point, states, sun, taus,
 };
 use crate::optics::peak::peak_table;
+use crate::volume::Lattice;
 use crate::volume::field::Field;
 use crate::wire::{Beam, Beams, Residual};
 
@@ -43,8 +43,8 @@ fn camera(scene: &Scene, from_in_index: DVec3) -> Camera {
 }
 
 /// The rays through the centers of a camera's pixels, in index space.
-fn rays(scene: &Scene, camera: &Camera) -> Vec<Ray> {
-    let index_from_world = scene.lattice().index_from_world();
+fn rays(lattice: &Lattice, camera: &Camera) -> Vec<Ray> {
+    let index_from_world = lattice.index_from_world();
     let [forward, right, up] = camera.frame().unwrap();
     let pixel = |idx: usize| {
         let x = (idx % camera.width) as f64 + 0.5;
@@ -149,7 +149,7 @@ fn assert_medium_seen(
         fire,
     };
     let camera = camera(scene, DVec3::new(-14.0, 9.0, -11.0));
-    let rays = rays(scene, &camera);
+    let rays = rays(&scene.lattice(), &camera);
     let constant = Value::new(PortType::Environment, 0, Environment::Constant(ambient));
     let inputs =
         [("medium", &medium), ("beams", &beams), ("residual", &residual), ("environment", &constant)];
@@ -202,7 +202,7 @@ fn parallel_light_is_seen_as_the_oracle_sees_it() {
 #[test]
 fn windowed_light_leaves_its_forward_share_to_the_stack() {
     let Some(gpu) = gpu() else { return };
-    let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0 });
+    let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0, share: 0.7 });
     // Towards the camera, aside, and away from it.
     let beams = [DVec3::new(-0.8, 0.5, -0.6), DVec3::new(0.3, -0.2, 0.9), DVec3::new(0.8, -0.5, 0.6)]
         .map(|direction| Beam { window, a0: 0.9, ..sun(direction, 1.0) });
@@ -221,7 +221,7 @@ fn wide_light_that_spreads_looks_as_if_it_did_not() {
     let medium = scene.medium(gpu);
     let ordinate =
         Ordinate { direction: DVec3::NEG_Y, irradiance: [3.0; 3], a0: 1.0, region: None, window: None };
-    let light = Ordinates { ordinates: vec![ordinate], ambient: [0.0; 3] };
+    let light = Ordinates { ordinates: vec![ordinate], ..Ordinates::default() };
     let light = Value::new(PortType::Ordinates, 0, light);
     let see = |peak: &str| {
         let inputs = [("medium", &medium), ("ordinates", &light)];
@@ -233,32 +233,6 @@ fn wide_light_that_spreads_looks_as_if_it_did_not() {
     let sum = |light: &[f64]| light.iter().sum::<f64>();
     let change = sum(&widening) / sum(&straight) - 1.0;
     assert!(change != 0.0 && change.abs() < 0.1, "{change}");
-}
-
-#[test]
-fn the_stack_shines_through_by_its_level() {
-    // A stack that is 1 + x everywhere is e^{x − T} (1 + x) of a ray of optical depth T, x = albedo f T, in
-    // each channel: linear between levels, so interpolation is exact.
-    let Some(gpu) = gpu() else { return };
-    let albedo = [1.0, 0.5, 0.9];
-    let scene = scene(0.85, albedo);
-    let medium = scene.medium(gpu);
-    let texels = STACK_X.iter().flat_map(|x| vec![[1.0 + *x as f32; 3]; 8]).collect();
-    let stack = Some(Arc::new(Stack { width: 4, height: 2, texels }));
-    let dark = Arc::new(vec![[0.0; 3]; 8]);
-    let map = Map { width: 4, height: 2, texels: dark, scale: 1.0, rotate_y: 0.3, stack };
-    let map = Value::new(PortType::Environment, 0, Environment::Map(map));
-    let camera = camera(&scene, DVec3::new(-14.0, 9.0, -11.0));
-    let image = march(gpu, &[("medium", &medium), ("environment", &map)], camera);
-    let tau: Vec<f64> = channel(&image, ALPHA, 0).iter().map(|alpha| -(1.0 - alpha).ln()).collect();
-    assert!(largest(&tau) > 1.0, "{tau:?}");
-    for (c, albedo) in albedo.into_iter().enumerate() {
-        let x = |tau: f64| albedo * 0.85 * 0.85 * tau;
-        let expected: Vec<f64> = tau.iter().map(|tau| (x(*tau) - tau).exp() * (1.0 + x(*tau))).collect();
-        // tau by way of an alpha of 24 bits; the level by sixteen clamped sums, of which an ulp is 1e-6.
-        assert_close("forward", &channel(&image, "forward", c), &expected, filtered(gpu, 2e-5), 0.0);
-        assert_close("beauty", &channel(&image, BEAUTY, c), &expected, filtered(gpu, 2e-5), 0.0);
-    }
 }
 
 #[test]
@@ -282,7 +256,7 @@ fn a_floor_is_lit_by_the_sun_and_seen_through_the_medium() {
     let floor = Value::new(PortType::Surface, 0, floor);
     let direction = DVec3::new(0.75f64.sqrt(), -0.5, 0.0);
     let ordinate = Ordinate { direction, irradiance: [3.0; 3], a0: 1.0, region: None, window: None };
-    let ordinates = Ordinates { ordinates: vec![ordinate], ambient: [0.0; 3] };
+    let ordinates = Ordinates { ordinates: vec![ordinate], ..Ordinates::default() };
     let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
     let inputs = [("medium", &medium), ("ordinates", &ordinates), ("surfaces", &floor)];
     let beams = output(gpu, "principal_propagation", json!({}), &inputs);
@@ -467,3 +441,5 @@ fn layouts_are_those_of_the_shader() {
         assert_layout::<Pixel>("raymarch.wgsl", "Pixel", &choices);
     }
 }
+
+mod stack;

@@ -20,7 +20,8 @@ fn suns(gpu: &Gpu, scene: &Scene, scheme: &str, directions: &[DVec3], surfaces: 
         region: None,
         window: None,
     };
-    let ordinates = Ordinates { ordinates: directions.iter().map(ordinate).collect(), ambient: [0.0; 3] };
+    let ordinates =
+        Ordinates { ordinates: directions.iter().map(ordinate).collect(), ..Ordinates::default() };
     let (medium, ordinates) = (scene.medium(gpu), Value::new(PortType::Ordinates, 0, ordinates));
     let mut inputs = vec![("medium", &medium), ("ordinates", &ordinates)];
     inputs.extend(surfaces.iter().map(|surface| ("surfaces", *surface)));

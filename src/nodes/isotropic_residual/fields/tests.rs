@@ -20,7 +20,7 @@ fn scene() -> Scene {
 fn literal(gpu: &Gpu, medium: &Value, irradiance: [f64; 3], ambient: [f64; 3]) -> Value {
     let direction = DVec3::new(0.3, -0.2, 0.9).normalize();
     let ordinate = Ordinate { direction, irradiance, a0: 1.0, region: None, window: None };
-    let ordinates = Ordinates { ordinates: vec![ordinate], ambient };
+    let ordinates = Ordinates { ordinates: vec![ordinate], ambient, ..Ordinates::default() };
     let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
     let inputs = [("medium", medium), ("ordinates", &ordinates)];
     output(gpu, "principal_propagation", json!({ "scheme": "literal" }), &inputs)

@@ -23,7 +23,7 @@ fn ordinate(scene: &Scene, direction: DVec3, irradiance: [f64; 3], a0: f64) -> O
 
 /// (phi, F) of each channel after so many iterations.
 fn propagate(gpu: &Gpu, scene: &Scene, ordinates: &[Ordinate], iterations: usize) -> Vec<Vec<f64>> {
-    let ordinates = Ordinates { ordinates: ordinates.to_vec(), ambient: [0.0; 3] };
+    let ordinates = Ordinates { ordinates: ordinates.to_vec(), ..Ordinates::default() };
     let ordinates = Value::new(PortType::Ordinates, 0, ordinates);
     let medium = scene.medium(gpu);
     let inputs = [("medium", &medium), ("ordinates", &ordinates)];

@@ -27,7 +27,7 @@ fn ordinates(scene: &Scene, directions: &[DVec3]) -> Value {
         window: None,
     };
     let ordinates = directions.iter().map(ordinate).collect();
-    Value::new(PortType::Ordinates, 0, Ordinates { ordinates, ambient: [0.0; 3] })
+    Value::new(PortType::Ordinates, 0, Ordinates { ordinates, ..Ordinates::default() })
 }
 
 /// Widening beams of 1 W/m².

@@ -43,7 +43,7 @@ fn assert_gathered(gpu: &Gpu, what: &str, scene: &Scene, lights: &[Beam], distan
         fire: None,
     };
     let camera = telescope(scene, distance);
-    let rays = rays(scene, &camera);
+    let rays = rays(&scene.lattice(), &camera);
     let camera = Value::new(PortType::Camera, 0, camera);
     let [found, looked_up] = both(gpu, &[("medium", &medium), ("beams", &beams), ("camera", &camera)]);
     for c in 0..3 {
@@ -106,7 +106,7 @@ fn gathered_light_is_seen_as_the_oracle_gathers_it() {
 #[test]
 fn gathered_light_leaves_its_forward_share_to_the_stack() {
     let Some(gpu) = gpu() else { return };
-    let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0 });
+    let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0, share: 0.7 });
     let lights: Vec<Beam> = suns(0.85).into_iter().map(|sun| Beam { window, ..sun }).collect();
     assert_gathered(gpu, "windows", &scene(0.85, [0.9; 3]), &lights, 200.0);
 }
