@@ -3,6 +3,7 @@
 use egui::{RichText, Ui};
 
 use super::number::named;
+use crate::editor::panels::status_bar::time;
 use crate::editor::{NodeState, NodeStatus, Project};
 use crate::graph::{Decision, Document, End, NodeSpec, PortSpec, Side, Wire};
 use crate::nodes::catalog;
@@ -149,7 +150,8 @@ pub fn run(ui: &mut Ui, status: &NodeStatus) {
 fn cost(status: &NodeStatus) -> String {
     let cached = if status.cached { ", from the cache" } else { "" };
     let mib = status.bytes as f64 / f64::from(1 << 20);
-    format!("{:.1} ms, of these {:.1} ms on the GPU; {mib:.1} MiB{cached}", status.cpu_ms, status.gpu_ms)
+    let [all, on_gpu] = [status.cpu_ms, status.gpu_ms].map(time);
+    format!("{all}, of these {on_gpu} on the GPU; {mib:.1} MiB{cached}")
 }
 
 fn told(ui: &mut Ui, decision: &Decision) {
