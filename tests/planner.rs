@@ -13,7 +13,6 @@ use glam::{DMat4, DVec3, IVec3};
 use tyndall::graph::{CancelToken, Decision, Document, Target};
 use tyndall::image::Image;
 use tyndall::nodes;
-use tyndall::planner;
 use tyndall::session::Session;
 use tyndall::volume::grid::Grid;
 use tyndall::volume::vdb;
@@ -351,7 +350,7 @@ fn many_beams_are_gathered_at_corners() {
     let both = both(&mut session, &graph, "march", "gathering");
     let [found, looked_up] = &both;
     assert!(found.beauty() != looked_up.beauty(), "nothing was gathered");
-    assert_apart("gathered beams", &both, planner::GATHERING_ERROR);
+    assert_apart("gathered beams", &both, 0.01);
 }
 
 #[test]
@@ -398,7 +397,11 @@ fn what_is_foretold_is_what_is_done() {
             for (foretold, done) in explained.nodes.iter().zip(&solved.costs) {
                 assert_eq!((&foretold.name, &foretold.report.decisions), (&done.name, &done.decisions));
                 // Of a file, what was read of it may have grown since.
-                if !foretold.was_run {
+                let is_lit_surface = (preset, foretold.name.as_str()) == ("fire", "residual");
+                if is_lit_surface {
+                    // Patches are counted when surfaces are cut.
+                    assert_eq!(foretold.bytes, None);
+                } else if !foretold.was_run {
                     assert_eq!(foretold.bytes, Some(done.bytes), "{preset}: {}", foretold.name);
                 }
             }

@@ -27,7 +27,8 @@ struct GatherParams {
     packs_per_column: u32,
     // First corner along z of this band.
     first: u32,
-    pad: u32,
+    // The march evaluates light so far from a sample that met matter, at most [cells].
+    reach: i32,
 }
 
 @group(0) @binding(0) var<uniform> params: GatherParams;
@@ -44,14 +45,18 @@ const HAS_WINDOW: bool = {window};
 // Less than this is none; its logarithm is a number.
 const DARK: f32 = 1e-30;
 
-// Whether a sample that reads this corner can meet matter.
+// Whether light that is evaluated in a cell around this corner can be that of a sample in matter.
 fn is_read(corner: vec3u) -> bool {
     let last = vec3i(textureDimensions(blocks)) - 1;
-    for (var n = 0u; n < 8u; n += 1u) {
-        // Samples that read it lie in the cells around it.
-        let cell = vec3i(corner) - vec3i(vec3u(n & 1u, (n >> 1u) & 1u, n >> 2u));
-        if textureLoad(blocks, clamp(cell / BLOCK, vec3i(0), last), 0).x > 0.0 {
-            return true;
+    let low = max(vec3i(corner) - 1 - params.reach, vec3i(0)) / BLOCK;
+    let high = min((vec3i(corner) + params.reach) / BLOCK, last);
+    for (var z = low.z; z <= high.z; z += 1) {
+        for (var y = low.y; y <= high.y; y += 1) {
+            for (var x = low.x; x <= high.x; x += 1) {
+                if textureLoad(blocks, vec3i(x, y, z), 0).x > 0.0 {
+                    return true;
+                }
+            }
         }
     }
     return false;
@@ -66,7 +71,7 @@ fn gather_beams(@builtin(global_invocation_id) id: vec3u) {
     let p = vec3f(corner) - 0.5;
     let to_eye = params.eye - p;
     let distance = length(to_eye);
-    let direction = to_eye / distance;
+    let direction = to_eye / max(distance, 1e-6);
     let tau_c = walk_past(sigma_t, linear_clamp, blocks, params.shape, params.cell_m, p, direction, distance);
     let k = spectrum(params.k);
     var single = Spectrum(0.0);

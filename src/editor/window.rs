@@ -22,6 +22,8 @@ pub struct Left {
     pub project: Option<Project>,
     /// Why the device is gone; `None` for the first window.
     pub why: Option<String>,
+    /// What is written down of the graph, until the next window writes it.
+    pub autosave: Option<Autosave>,
 }
 
 /// Where it is left.
@@ -35,23 +37,30 @@ const SHORTEST: Duration = Duration::from_secs(20);
 /// # Errors
 /// Where the window cannot be opened, or its device is lost too soon.
 pub fn run(project: Option<Project>, adapter: &AdapterChoice) -> Result<(), EditorError> {
-    let place = Place::new(RefCell::new(Some(Left { project, why: None })));
+    let place = Place::new(RefCell::new(Some(Left { project, ..Left::default() })));
     loop {
         let start = Instant::now();
         let ended = open(&place, adapter);
         let message = match ended {
             Ok(()) if place.borrow().is_none() => return Ok(()),
             Ok(()) if start.elapsed() > SHORTEST => continue,
-            Ok(()) => "its GPU was lost again at once".to_owned(),
-            Err(error) => error.to_string(),
+            Ok(()) => {
+                let secs = start.elapsed().as_secs();
+                format!(
+                    "the window's GPU was lost after {secs} s: update its driver; tyndall render needs no window"
+                )
+            }
+            Err(error) => format!("the window cannot be opened: {error}"),
         };
         let kept = match place.take() {
-            Some(Left { project: Some(project), why: Some(_) }) => {
-                Autosave::write_down(&project, state_folder())
+            Some(Left { project: Some(project), why: Some(_), autosave }) => {
+                let kept = Autosave::write_down(&project, state_folder());
+                autosave.into_iter().for_each(|mut earlier| earlier.forget());
+                kept
             }
             _ => "",
         };
-        return Err(EditorError::Window(format!("the window cannot be opened: {message}{kept}")));
+        return Err(EditorError::Window(format!("{message}{kept}")));
     }
 }
 
@@ -63,13 +72,14 @@ fn open(place: &Place, adapter: &AdapterChoice) -> Result<(), eframe::Error> {
     };
     let (adapter, place) = (adapter.clone(), Rc::clone(place));
     let create: eframe::AppCreator = Box::new(move |context| {
-        let Left { project, why } = place.take().unwrap_or_default();
+        let Left { project, why, autosave } = place.take().unwrap_or_default();
         let mut app = App::new(&context.egui_ctx, project, &adapter, state_folder());
         if let Some(state) = &context.wgpu_render_state {
             app.watch(Faults::of(&state.device), place);
         }
         if let Some(why) = why {
             app.tell_lost(&why);
+            app.go_on_with(autosave);
         }
         Ok(Box::new(app))
     });

@@ -43,6 +43,8 @@ pub struct Map {
 
 /// A sun's texels are brighter than the mean of the map by more than this: skies and lamps reach some tens.
 pub const SUN_CONTRAST: f64 = 100.0;
+/// |mean direction| of a sun, at least: that of a disc of 14 degrees. Longer lamps are not one direction.
+pub const SUN_SPREAD: f64 = 0.996;
 /// Less of the map's light than this is no sun: a cut into 32 regions would not give it one.
 pub const SUN_SHARE: f64 = 1.0 / 32.0;
 
@@ -95,8 +97,8 @@ impl Map {
     }
 
     /// The suns of the map, each the indices of its texels in order: texels that touch, each brighter than
-    /// [`SUN_CONTRAST`] times the map's mean luminance, and together more than [`SUN_SHARE`] of its light. All
-    /// suns together fill less than 1/[`SUN_CONTRAST`] of the directions.
+    /// [`SUN_CONTRAST`] times the map's mean luminance, together more than [`SUN_SHARE`] of its light, and no wider
+    /// than [`SUN_SPREAD`]. All suns together fill less than 1/[`SUN_CONTRAST`] of the directions.
     pub fn suns(&self) -> Vec<Vec<usize>> {
         let row_light = |row: usize| {
             let row_texels = &self.texels[row * self.width..(row + 1) * self.width];
@@ -122,8 +124,16 @@ impl Map {
                     }
                 }
             }
-            let of_sun: f64 = sun.iter().map(|idx| radiance(*idx) * self.solid_angle(idx / self.width)).sum();
-            if of_sun > SUN_SHARE * light {
+            let mut of_sun = 0.0;
+            let mut mean = DVec3::ZERO;
+            for idx in &sun {
+                let (row, column) = (idx / self.width, idx % self.width);
+                let at = |n: usize, size: usize| (n as f64 + 0.5) / size as f64;
+                let weight = radiance(*idx) * self.solid_angle(row);
+                of_sun += weight;
+                mean += weight * self.direction(at(column, self.width), at(row, self.height));
+            }
+            if of_sun > SUN_SHARE * light && mean.length() > SUN_SPREAD * of_sun {
                 sun.sort_unstable();
                 suns.push(sun);
             }
@@ -172,6 +182,9 @@ mod tests {
         // 90 is not bright enough; and a texel next to the pole, bright enough, has 0.5 % of all light.
         assert!(lit(&[(left, 90.0)]).is_empty());
         assert_eq!(lit(&[all[0], all[1], (7, 4e3)]), vec![vec![left, right]]);
+        // A lamp of 45 degrees is no one direction; one of 11 is.
+        let lamp = |n: usize| (0..n).map(|column| (16 * width + column, 1e5)).collect::<Vec<_>>();
+        assert_eq!((lit(&lamp(8)).len(), lit(&lamp(2)).len()), (0, 1));
         // Nothing that is wider than a hundredth of the sphere.
         let cap: Vec<_> = (0..2 * width).map(|idx| (idx, 1e6)).collect();
         assert!(lit(&cap).len() <= 1);

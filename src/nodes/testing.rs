@@ -147,6 +147,16 @@ impl Scene {
         Self { sigma_t, cell_m: 0.25, albedo: [0.9; 3], g: 0.5 }
     }
 
+    /// The same with matter in the second block of 8³ cells alone, of which no sample reaches into another.
+    pub fn in_one_block(mut self) -> Self {
+        for idx in 0..self.sigma_t.data.len() {
+            if self.sigma_t.index_of(idx).into_iter().any(|i| !(9..15).contains(&i)) {
+                self.sigma_t.data[idx] = 0.0;
+            }
+        }
+        self
+    }
+
     /// Its grid in the world.
     pub fn lattice(&self) -> Lattice {
         let turn = DMat4::from_rotation_y(0.4) * DMat4::from_rotation_x(-0.3);

@@ -8,8 +8,10 @@
 //! squared, so that between corners, along both axes across the view, it is off by at most
 //! 2 · (1/8) 3g/((1 - g) d)². And where beams mix, the logarithm of their sum bends by the variance of its terms'
 //! slopes, for light from everywhere (sigma_t h)²/3 along each of three axes; the mean over a cell of what that
-//! makes too bright is a twelfth. Both are the worst case: a cumulus of 1.2 optical depths a cell at most, lit by 32
-//! ordinates of a sky, is 0.06 % brighter.
+//! makes too bright is a twelfth. A window that takes light off a beam between two angles adds its own bend, at most
+//! 6 over their distance squared. Estimates for unkind light, with the mean of what cells hold: a cumulus of up to 1.2
+//! optical depths a cell, lit by 32 ordinates of a sky, is 0.06 % brighter for it, and the picture of a camera that
+//! passes the distance where the choice changes changes by as much.
 
 use super::number;
 use crate::graph::Decision;
@@ -25,29 +27,34 @@ pub struct Gathering {
     pub is_closed: bool,
     /// The largest |g| a0 of a beam.
     pub g: f64,
+    /// The least angle within which a window takes light off a beam, in radians; infinite for none.
+    pub window: f64,
     /// From the eye to the nearest matter, at least [cells]; 0 inside.
     pub distance: f64,
     /// Optical depth of a cell that holds something, about.
     pub cell_tau: f64,
+    /// Whether the device has room for the sums.
+    pub fits: bool,
     /// What the march moves, beam by beam.
     pub looked_up_bytes: f64,
     /// What it moves together with the gathering.
     pub gathered_bytes: f64,
 }
 
-/// Both errors together, relative, at most.
+/// All errors together, relative, about.
 pub const GATHERING_ERROR: f64 = 0.02;
 
 /// Whether beams are gathered at corners.
 pub fn gathering(facts: Gathering, prune: bool) -> (bool, Decision) {
     const RULE: &str = "gathering";
     let what = "looking up every beam at every step";
-    let Gathering { n_beams, g, distance, .. } = facts;
-    let error = turning_error(g, distance) + mixing_error(facts.cell_tau);
-    let data = format!(
-        "{n_beams} beam{}; the eye is {} cells away, g = {}, cells of {} optical depths: error {} at most; {} MB looked up, \
-         {} MB gathered",
-        if n_beams == 1 { "" } else { "s" },
+    let beams = format!("{} beam{}", facts.n_beams, if facts.n_beams == 1 { "" } else { "s" });
+    let Gathering { g, distance, .. } = facts;
+    let error =
+        turning_error(g, distance) + window_error(facts.window, distance) + mixing_error(facts.cell_tau);
+    let found = format!(
+        "{beams}; the eye is {} cells away, g = {}, cells of some {} optical depths: error about {}; {} MB looked up, {} MB \
+         gathered",
         number(distance),
         number(g),
         number(facts.cell_tau),
@@ -55,11 +62,13 @@ pub fn gathering(facts: Gathering, prune: bool) -> (bool, Decision) {
         number((facts.looked_up_bytes * 1e-6).round()),
         number((facts.gathered_bytes * 1e-6).round()),
     );
+    let data = if prune && facts.is_plain && !facts.is_closed { found } else { beams };
     let kept = |reason: &str| (false, Decision::kept(RULE, what, reason, data.clone()));
     match () {
         () if !prune => kept("everything is modeled"),
         () if !facts.is_plain => kept("lights have places, shadows, or peaks that widen"),
         () if facts.is_closed => kept("a shape's depths are known at every place"),
+        () if !facts.fits => kept("the device has no room for what would be gathered"),
         () if facts.gathered_bytes >= facts.looked_up_bytes => kept("there are more corners than steps"),
         () if error > GATHERING_ERROR => {
             kept("light is not smooth enough from corner to corner, so near or so thick")
@@ -74,7 +83,12 @@ pub fn gathering(facts: Gathering, prune: bool) -> (bool, Decision) {
 
 /// Largest relative error between corners of a phase function towards an eye so many cells away.
 fn turning_error(g: f64, distance: f64) -> f64 {
-    0.25 * 3.0 * g / ((1.0 - g) * distance).powi(2)
+    if g > 0.0 { 0.25 * 3.0 * g / ((1.0 - g) * distance).powi(2) } else { 0.0 }
+}
+
+/// The same of a smooth step over an angle.
+fn window_error(window: f64, distance: f64) -> f64 {
+    if window.is_finite() { 0.25 * 6.0 / (window * distance).powi(2) } else { 0.0 }
 }
 
 /// Mean relative error where light from everywhere goes through cells of this optical depth.
@@ -92,8 +106,10 @@ mod tests {
         is_plain: true,
         is_closed: false,
         g: 0.85,
+        window: f64::INFINITY,
         distance: 200.0,
         cell_tau: 0.2,
+        fits: true,
         looked_up_bytes: 5e9,
         gathered_bytes: 1e9,
     };
@@ -115,8 +131,16 @@ mod tests {
         assert!(gathering(Gathering { distance: 42.0, ..MANY }, true).0);
         assert!(kept(Gathering { distance: 0.0, ..MANY }).contains("near"));
         assert!(kept(Gathering { cell_tau: 0.5, ..MANY }).contains("thick"));
-        // Even light has nothing that turns.
-        assert!(gathering(Gathering { g: 0.0, distance: 1.0, ..MANY }, true).0);
+        // Two steps of a degree over a cell of 0.29 degrees, and of sixty.
+        assert!(kept(Gathering { window: 0.0175, ..MANY }).contains("near"));
+        assert!(gathering(Gathering { window: 1.05, ..MANY }, true).0);
+        assert!(kept(Gathering { fits: false, ..MANY }).contains("room"));
+        // Even light has nothing that turns, wherever the eye is.
+        for distance in [0.0, 1.0] {
+            let even = Gathering { g: 0.0, distance, ..MANY };
+            assert!(gathering(even, true).0);
+            assert!(!gathering(even, true).1.data.contains("NaN"));
+        }
     }
 
     #[test]

@@ -57,6 +57,13 @@ impl App {
         ));
     }
 
+    /// Writes down what is not saved where the window before this one did.
+    pub fn go_on_with(&mut self, autosave: Option<Autosave>) {
+        if autosave.is_some() {
+            self.safety.autosave = autosave;
+        }
+    }
+
     /// Whether the window's device is gone. Then its graph is left to the next one, it closes, and nothing is to be
     /// drawn: egui-wgpu ends the program where it cannot hand on what is. What is written down stays until the end.
     pub(super) fn hands_over(&mut self, context: &egui::Context) -> bool {
@@ -69,7 +76,9 @@ impl App {
         };
         if !self.files.is_closing() {
             let project = self.is_open.then(|| std::mem::take(&mut self.project));
-            *place.borrow_mut() = Some(window::Left { project, why: Some(why) });
+            // Held by this window still, it is not offered to the next as what another program left.
+            let autosave = self.safety.autosave.take();
+            *place.borrow_mut() = Some(window::Left { project, why: Some(why), autosave });
             self.is_open = false;
             self.files.close();
         }
@@ -117,7 +126,6 @@ impl App {
 
     /// The window ends. Where nobody agreed to that (the display is gone), what is not saved stays written down.
     pub(super) fn end(&mut self) {
-        // What was left to another window is not found there once more.
         if self.files.is_closing() {
             self.give_up();
         }

@@ -24,9 +24,12 @@ impl Toasts {
         self.0.push(Toast { text: text.into(), is_error: false, until: None });
     }
 
-    /// Says what went wrong.
+    /// Says what went wrong, once for as long as it stands there.
     pub fn complain(&mut self, text: impl ToString) {
-        self.0.push(Toast { text: text.to_string(), is_error: true, until: None });
+        let text = text.to_string();
+        if !self.0.iter().any(|toast| toast.is_error && toast.text == text) {
+            self.0.push(Toast { text, is_error: true, until: None });
+        }
     }
 
     /// Draws them in the corner.

@@ -111,7 +111,8 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
         }
         n_cells = dims.iter().product();
     }
-    let bytes = Some(16 * (n_cells * channels.count) as u64);
+    // How many patches surfaces are cut into, only the run shows.
+    let bytes = (!has_surfaces || n_cells == 0).then_some(16 * (n_cells * channels.count) as u64);
     let report = Report { decisions, cells: Some(dims), channels: told_channels, bytes, stages };
     Ok(Plan { effort, channels, scattering, has_lobes, report })
 }

@@ -32,7 +32,8 @@ static SPEC: NodeSpec = NodeSpec {
     category: Category::Light,
     purpose: "Splits all light from afar into principal ordinates.",
     doc: "Suns pass through as they are, and so do those in a map: small, over 100 times as bright as its mean, and over \
-          1/32 of its light. Of an environment, the constant part (its minimum over all directions, per channel) becomes ambient light, which needs no beams; the rest is split into regions, each a beam with the region's irradiance \
+          1/32 of its light. Of an environment, the constant part (its minimum over all directions, per channel) becomes \
+          ambient light, which needs no beams; the rest is split into regions, each a beam with the region's irradiance \
           and its mean direction. How wide a region is counts where prefilter says so.",
     inputs: &[
         PortSpec::new("environment", PortType::Environment, "light from all directions")

@@ -7,7 +7,7 @@
 //! window of share 1 takes off, (1 − w) peak_j, begins at the inner angle, where there is no peak: it is integrated
 //! by even samples of θ, in which it is periodic. Where f^j < 1e-10 peak_j is its limit, (1 + 3mu + 5P₂)/4π.
 //!
-//! Degrees end at the grid's. A peak that still has power there would ring, below zero next to a sun: all
+//! Degrees end at the grid's. A peak that still has power there would ring, below zero next to a bright spot: all
 //! is smoothed by a Gaussian on the sphere (a factor e^{−s² l(l+1)/2}, positive, short of tail), s so that the
 //! first peak has fallen to e^−10 at the last degree: s = 0 for g up to 0.961 on the largest grid, 0.9° for
 //! 0.99 and at most 1°. What rings is then under 3e-4/sr. Kernels are negative by
@@ -123,16 +123,18 @@ pub(super) fn turns(g: f64, window: Window) -> [[f32; STACK_TURNS]; N_LEVELS] {
         .collect();
     std::array::from_fn(|level| {
         let total: f64 = parts.iter().map(|part| part[level]).sum();
+        if total <= 0.0 {
+            // A window that lets nothing through turns nothing.
+            return [0.0; STACK_TURNS];
+        }
         std::array::from_fn(|turn| {
             let mut rest = (turn as f64 + 0.5) / STACK_TURNS as f64 * total;
             let idx = parts.iter().position(|part| {
                 rest -= part[level];
                 rest <= 0.0
             });
-            // A window that lets nothing through turns nothing.
-            idx.map_or(0.0, |idx| {
-                angle(idx + 1) + rest / parts[idx][level].max(1e-300) * (angle(idx + 1) - angle(idx))
-            }) as f32
+            idx.map_or(0.0, |idx| angle(idx + 1) + rest / parts[idx][level] * (angle(idx + 1) - angle(idx)))
+                as f32
         })
     })
 }

@@ -6,6 +6,7 @@ use super::super::Run;
 use super::layers::Pixel;
 use crate::camera::Camera;
 use crate::graph::{NodeError, Report, StageWork};
+use crate::light::Window;
 use crate::optics::delta::DeltaScaled;
 use crate::planner::{self, Colors, Gathering};
 use crate::wire::{Beam, Beams, Channels, Medium, Place, Residual};
@@ -92,6 +93,9 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
     let looked_up = moved(besides + of_beams);
     let gathering = bytes_of_gathering(&plan, medium, of_beams);
     let gathered = moved(besides + 16.0 * plan.channels.count as f64);
+    let corners = medium.lattice.dims.map(|n| n + 1);
+    let layers = corners[2] * plan.channels.count;
+    let sums_bytes = (16 * corners[0] * corners[1] * layers) as u64;
     let mut stages = Vec::new();
     if has_beams {
         let facts = Gathering {
@@ -99,8 +103,10 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
             is_plain: parts.iter().all(|part| part.is_plain()),
             is_closed: medium.homogeneous.is_some(),
             g: beams.iter().map(|beam| medium.g.abs() * beam.a0).fold(0.0, f64::max),
+            window: beams.iter().filter_map(|beam| beam.window).map(angle).fold(f64::INFINITY, f64::min),
             distance: distance(medium, camera),
             cell_tau: MEAN_OF_LARGEST * medium.sigma_t_max * medium.lattice.cell_m,
+            fits: sums_bytes <= MOST_SUMS && layers <= run.gpu.max_texture_3d() as usize,
             looked_up_bytes: looked_up,
             gathered_bytes: gathering + gathered,
         };
@@ -120,6 +126,14 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
         stages,
     };
     Ok(plan)
+}
+
+/// Memory that sums of beams may take.
+const MOST_SUMS: u64 = 1 << 29;
+
+/// Between a window's angles in radians.
+fn angle(window: Window) -> f64 {
+    (window.outer_deg - window.inner_deg).to_radians()
 }
 
 /// From the eye to the nearest cell that may hold something [cells].

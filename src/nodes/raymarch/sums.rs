@@ -3,7 +3,7 @@
 //!
 //! Three sums a channel, W/m² times a phase function [1/sr], as their natural logarithms: one RGBA texel of f32 a
 //! corner and channel, channels one beyond the other along z. Of one beam they are as exact between corners as
-//! its depth is; what several beams and a turning view add is bounded by the rule that chooses
+//! its depth is; what several beams and a turning view add is estimated by the rule that chooses
 //! (`planner::gathering`). Corners that no sample in matter reads stay empty. Tested against the f64 oracle
 //! (`oracle/sums.rs`) and against the march that looks up every beam.
 
@@ -26,7 +26,7 @@ mirror! {
         g: f32,
         packs_per_column: u32,
         first: u32,
-        pad: u32,
+        reach: i32,
     }
 }
 
@@ -82,7 +82,8 @@ pub(super) fn gather(
             g: march.g,
             packs_per_column: march.packs_per_column,
             first: first as u32,
-            pad: 0,
+            // Between the middles of two steps.
+            reach: march.step.ceil() as i32,
         };
         let mut recorder = gpu.recorder("gather beams");
         let bound = stage.bind(gpu, &params, &inputs, &[Bind::Texture(&sums)]);

@@ -5,11 +5,11 @@ use serde_json::json;
 
 use super::MarchParams;
 use super::layers::Pixel;
-use super::oracle::{MarchScene, Marched, Ray, box_interval, march_through};
+use super::oracle::{MarchScene, Marched, Ray, bend, box_interval, march_through, sums};
 use super::sums::GatherParams;
 use crate::camera::Camera;
 use crate::geometry::Mesh;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Shader, wgsl_constant};
 use crate::graph::{PortType, Value};
 use crate::image::{ALPHA, BEAUTY, DEPTH, Image};
 use crate::light::environment::Environment;
@@ -439,6 +439,13 @@ fn layouts_are_those_of_the_shader() {
         assert_layout::<MarchParams>("raymarch.wgsl", "MarchParams", &choices);
         assert_layout::<GatherParams>("raymarch/gather.wgsl", "GatherParams", &choices);
         assert_layout::<Pixel>("raymarch.wgsl", "Pixel", &choices);
+        let constant = |file: &str, name: &str| {
+            let shader =
+                Shader::expand(file, &choices.map(|(name, value)| (name, value.to_owned()))).unwrap();
+            wgsl_constant(&shader, name).unwrap()
+        };
+        assert_eq!(constant("raymarch.wgsl", "WAYS_AROUND"), [bend::WAYS_AROUND as f64]);
+        assert_eq!(constant("raymarch/gather.wgsl", "DARK"), [f64::from(sums::DARK as f32)]);
     }
 }
 

@@ -16,7 +16,7 @@ use crate::nodes::oracle_scene::{OracleBeam, OracleMedium};
 use crate::volume::field::Field;
 
 /// Less than this is none.
-const DARK: f64 = 1e-30;
+pub const DARK: f64 = 1e-30;
 
 /// Logarithms of the three sums at each corner, for an eye in index space.
 pub fn gather(scene: &MarchScene, eye: DVec3) -> Field<DVec3> {

@@ -3,9 +3,7 @@
 
 use super::*;
 use crate::nodes::Run;
-use crate::nodes::raymarch::oracle::sums;
 use crate::nodes::testing::with_run;
-use crate::planner::GATHERING_ERROR;
 
 const MANY: usize = 13;
 
@@ -18,9 +16,9 @@ fn telescope(scene: &Scene, distance: f64) -> Camera {
 }
 
 /// The picture of a march that must gather, and one that must not.
-fn both(gpu: &Gpu, inputs: &[(&str, &Value)]) -> [Image; 2] {
+fn both(gpu: &Gpu, step: f64, inputs: &[(&str, &Value)]) -> [Image; 2] {
     let make = |prune: bool| {
-        with_run(gpu, "raymarch", json!({}), inputs, |run| {
+        with_run(gpu, "raymarch", json!({ "step": step }), inputs, |run| {
             let run = Run { prune, report: Default::default(), ..*run };
             let image = (crate::nodes::kind("raymarch").unwrap().run)(&run).unwrap().remove(0);
             let report = run.report.borrow();
@@ -45,7 +43,7 @@ fn assert_gathered(gpu: &Gpu, what: &str, scene: &Scene, lights: &[Beam], distan
     let camera = telescope(scene, distance);
     let rays = rays(&scene.lattice(), &camera);
     let camera = Value::new(PortType::Camera, 0, camera);
-    let [found, looked_up] = both(gpu, &[("medium", &medium), ("beams", &beams), ("camera", &camera)]);
+    let [found, looked_up] = both(gpu, 0.5, &[("medium", &medium), ("beams", &beams), ("camera", &camera)]);
     for c in 0..3 {
         let seen: Vec<Marched> = with_march(scene, c, &lit, |march| {
             let sums = sums::gather(march, rays[0].origin);
@@ -74,8 +72,9 @@ fn assert_gathered(gpu: &Gpu, what: &str, scene: &Scene, lights: &[Beam], distan
         let sum = |image: &Image| channel(image, BEAUTY, c).iter().sum::<f64>();
         let apart = sum(&found) / sum(&looked_up) - 1.0;
         // By the planner's rule: g 0.85 turns by 0.07 %, and cells have optical depths evenly up to 3 · 0.25, the mean
-        // of whose squares is a third of the largest; a twelfth of that is 1.6 %.
-        let bound = GATHERING_ERROR;
+        // of whose squares is a third of the largest; a twelfth of that is 1.6 %, for light from everywhere. That of
+        // thirteen suns is a little less even.
+        let bound = 0.02;
         eprintln!("{what}: gathered {apart:+.2e}, bound {bound:.2e}");
         assert!(apart != 0.0 && apart.abs() < bound, "{what}, {c}: {apart}");
     }
@@ -97,6 +96,8 @@ fn gathered_light_is_seen_as_the_oracle_gathers_it() {
     for (g, distance) in [(0.0, 30.0), (0.5, 60.0), (0.85, 200.0), (-0.5, 60.0)] {
         assert_gathered(gpu, &format!("g {g}"), &scene(g, [0.9; 3]), &suns(g), distance);
     }
+    let one_block = Scene::new([24; 3], Filling::Random, 3.0).in_one_block();
+    assert_gathered(gpu, "one block", &one_block, &suns(0.5), 60.0);
     let colored =
         suns(0.5).iter().map(|sun| Beam { power: [sun.power[0], 1.0, 0.5], ..*sun }).collect::<Vec<_>>();
     assert_gathered(gpu, "colored light", &scene(0.5, [0.9; 3]), &colored, 60.0);
@@ -109,4 +110,32 @@ fn gathered_light_leaves_its_forward_share_to_the_stack() {
     let window = Some(Window { inner_deg: 40.0, outer_deg: 120.0, share: 0.7 });
     let lights: Vec<Beam> = suns(0.85).into_iter().map(|sun| Beam { window, ..sun }).collect();
     assert_gathered(gpu, "windows", &scene(0.85, [0.9; 3]), &lights, 200.0);
+}
+
+#[test]
+fn long_steps_read_no_corner_that_was_not_gathered() {
+    // Light of two steps is evaluated between their middles, which may be in an empty block between filled ones: a
+    // corner that was passed over holds ln 1 there, much more than any other.
+    let Some(gpu) = gpu() else { return };
+    let mut scene = Scene::new([24; 3], Filling::Random, 3.0);
+    for idx in 0..scene.sigma_t.data.len() {
+        // Blocks like the cells of a chessboard, of which none reaches into another.
+        let cell = scene.sigma_t.index_of(idx);
+        let is_white = cell.into_iter().map(|i| i / 8).sum::<usize>() % 2 == 1;
+        if is_white || cell.into_iter().any(|i| i % 8 == 0 || i % 8 == 7) {
+            scene.sigma_t.data[idx] = 0.0;
+        }
+    }
+    let medium = scene.medium(gpu);
+    let weak: Vec<Beam> = suns(0.5).iter().map(|sun| Beam { power: [1e-3; 3], ..*sun }).collect();
+    let beams = scene.propagate(gpu, &medium, &weak, [0.0; 3]);
+    let camera = Value::new(PortType::Camera, 0, telescope(&scene, 60.0));
+    let [found, looked_up] = both(gpu, 4.0, &[("medium", &medium), ("beams", &beams), ("camera", &camera)]);
+    let [found, looked_up] = [found, looked_up].map(|image| channel(&image, BEAUTY, 0));
+    let least = 0.01 * largest(&looked_up);
+    assert!(least > 0.0);
+    for (found, looked_up) in found.iter().zip(&looked_up) {
+        // Depths of a cell that is half void change by a third from corner to corner.
+        assert!(*found < 1.3 * looked_up + least, "{found} against {looked_up}");
+    }
 }
