@@ -18,7 +18,6 @@ struct WalkParams {
 @group(0) @binding(0) var<uniform> params: WalkParams;
 @group(1) @binding(0) var sigma_t: texture_3d<f32>;
 @group(1) @binding(1) var linear_clamp: sampler;
-@group(1) @binding(2) var blocks: texture_3d<f32>;
 @group(2) @binding(0) var tau: texture_storage_3d<{format}, write>;
 
 @compute @workgroup_size(8, 8, 1)
@@ -37,7 +36,7 @@ fn walk_corners(@builtin(global_invocation_id) id: vec3u) {
             reach = length(line);
             to_light = line / max(reach, 1e-6);
         }
-        depths[n] = stored_tau(walk_past(sigma_t, linear_clamp, blocks, params.shape, params.cell_m, p, to_light, reach));
+        depths[n] = stored_tau(walk(sigma_t, linear_clamp, params.shape, params.cell_m, p, to_light, reach));
     }
     textureStore(tau, params.origin + id, depths);
 }

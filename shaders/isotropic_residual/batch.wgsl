@@ -27,12 +27,14 @@ struct Batch {
 // Whether lobes have a direction; where g is 0 they have none.
 const HAS_LOBES: bool = {lobes};
 
-// Whether a thread (x, y, layer) has a cell in this batch's channels.
+// The cell (x, y, layer) of a thread: there is one for each of the batch's channels.
+fn cell_of(thread: vec3u) -> vec3u {
+    return thread + vec3u(0u, 0u, batch.first_channel * batch.level.dims.z);
+}
+
+// Whether there is such a cell.
 fn has_cell(id: vec3u) -> bool {
-    let c = id.z / batch.level.dims.z;
-    let first = batch.first / batch.level.n_directions;
-    let last = (batch.first + batch.n_pairs - 1u) / batch.level.n_directions;
-    return all(id.xy < batch.level.dims.xy) && c >= first && c <= last;
+    return all(id.xy < batch.level.dims.xy);
 }
 
 // Where the lobe of a thread's cell stands among those that are bound.

@@ -9,7 +9,8 @@
 @group(2) @binding(0) var<storage, read_write> lobes: array<vec4u>;
 
 @compute @workgroup_size(8, 8, 1)
-fn isotropic_residual_gather_lobes(@builtin(global_invocation_id) id: vec3u) {
+fn isotropic_residual_gather_lobes(@builtin(global_invocation_id) thread: vec3u) {
+    let id = cell_of(thread);
     let level = batch.level;
     if !has_cell(id) {
         return;

@@ -21,6 +21,8 @@ struct SourceParams {
 @group(2) @binding(0) var sources: texture_storage_3d<rgba32float, write>;
 
 const HAS_EMISSION: bool = {emission};
+// Whether k is the same in all channels.
+const IS_GREY: bool = {grey};
 
 // Mean of 1 / r^2 [1/m2] over the cell at `cell`, for a light at `position`, in index space.
 fn mean_inverse_square(cell: vec3f, position: vec3f, cell_m: f32) -> f32 {
@@ -72,13 +74,11 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
                     spreading = emission_along(beam, direction) * mean_inverse_square(vec3f(id), beam.place.xyz, level.cell_m);
                 }
                 let travel = vec4f(1.0, level.g_star * beam.power.w * direction);
-                // Where matter is grey one mean serves all channels.
-                var mean = 0.0;
-                var k_of_mean = -1.0;
+                let first_mean = cell_mean(one, level.channels[0].k, axis);
                 for (var c = 0u; c < level.n_channels; c += 1u) {
-                    if level.channels[c].k != k_of_mean {
-                        k_of_mean = level.channels[c].k;
-                        mean = cell_mean(one, k_of_mean, axis);
+                    var mean = first_mean;
+                    if !IS_GREY {
+                        mean = cell_mean(one, level.channels[c].k, axis);
                     }
                     totals[c] += beam.power[c] * spreading * mean * travel;
                 }

@@ -45,17 +45,13 @@ fn walk_past(sigma_t: texture_3d<f32>, linear_clamp: sampler, blocks: texture_3d
         return shape.sigma_t * way.n_steps * way.dt * cell_m;
     }
     var sum = 0.0;
-    var n = 0.0;
-    while n < way.n_steps {
+    for (var n = 0.0; n < way.n_steps; n += 1.0) {
         let at = p + (way.start + (n + 0.5) * way.dt) * to_light;
-        let block = block_way(blocks, p, to_light, at);
-        let next = clamp(ceil((block.until - way.start) / way.dt - 0.5), n + 1.0, way.n_steps);
-        if block.is_filled {
-            for (; n < next; n += 1.0) {
-                sum += extinction(sigma_t, linear_clamp, p + (way.start + (n + 0.5) * way.dt) * to_light);
-            }
+        let here = extinction(sigma_t, linear_clamp, at);
+        sum += here;
+        if here <= 0.0 {
+            n = max(n, floor((empty_until(blocks, p, to_light, at) - way.start) / way.dt - 0.5));
         }
-        n = next;
     }
     return sum * way.dt * cell_m;
 }

@@ -72,7 +72,7 @@ fn gather_beams(@builtin(global_invocation_id) id: vec3u) {
     let to_eye = params.eye - p;
     let distance = length(to_eye);
     let direction = to_eye / max(distance, 1e-6);
-    let tau_c = walk_past(sigma_t, linear_clamp, blocks, params.shape, params.cell_m, p, direction, distance);
+    let tau_c = walk(sigma_t, linear_clamp, params.shape, params.cell_m, p, direction, distance);
     let k = spectrum(params.k);
     var single = Spectrum(0.0);
     var reaching = Spectrum(0.0);

@@ -1,7 +1,7 @@
 //! The walk to the light, shared by the propagations: tau from every corner of a cell to every light.
 //!
 //! Midpoint samples of the trilinear extinction, at most a cell apart, from the corner to the edge of
-//! the medium or to the light, but for those in empty blocks (DESIGN 6.3); a homogeneous shape in closed form. Exact but for the
+//! the medium or to the light (DESIGN 6.3); a homogeneous shape in closed form. Exact but for the
 //! samples; its cost is corners × beams × the way through the medium.
 
 use super::Run;
@@ -41,14 +41,14 @@ pub(super) fn walk(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtla
 }
 
 /// Samples that a walk takes from a corner to the light, the mean over the beams: half of the way through
-/// the medium; of that of a point light half of the medium's mean extent; in an empty block one.
+/// the medium; of that of a point light half of the medium's mean extent.
 pub(super) fn samples(medium: &Medium, beams: &[Beam]) -> f64 {
     let occupied = DVec3::from_array(medium.lattice.occupied.map(|n| n as f64));
     let ways = beams.iter().map(|beam| match beam.place {
         Place::Parallel(direction) => (occupied / direction.abs().max(DVec3::splat(1e-9))).min_element(),
         Place::Point(_) => occupied.element_sum() / 3.0,
     });
-    0.5 * medium.blocks.samples_per_cell() * ways.sum::<f64>() / beams.len().max(1) as f64
+    0.5 * ways.sum::<f64>() / beams.len().max(1) as f64
 }
 
 /// A depth in closed form costs as much as so many samples (measured).
@@ -80,8 +80,7 @@ fn record(
         beams: std::array::from_fn(|n| beams[n.min(beams.len() - 1)].texel([0.0; 3])),
     };
     let stage = run.gpu.stage("walk", &atlas.choices())?;
-    let inputs =
-        [Bind::Texture(&medium.sigma_t), Bind::Sampler(sampler), Bind::Texture(&medium.blocks.texture)];
+    let inputs = [Bind::Texture(&medium.sigma_t), Bind::Sampler(sampler)];
     let bound = stage.bind(run.gpu, &params, &inputs, &[Bind::Texture(&atlas.texture)]);
     recorder.dispatch(&bound, atlas.corners);
     Ok(())

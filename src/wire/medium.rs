@@ -89,12 +89,6 @@ impl Blocks {
         self.largest.iter().filter(|largest| **largest > 0.0).count()
     }
 
-    /// Samples a cell apart that a ray takes which passes empty blocks in one, the mean.
-    pub fn samples_per_cell(&self) -> f64 {
-        let filled = self.n_filled() as f64 / self.largest.len() as f64;
-        filled + (1.0 - filled) / BLOCK as f64
-    }
-
     /// The number of the block that a position of index space lies in; outside, of the nearest one.
     pub fn at(&self, p: DVec3) -> f32 {
         let dims = self.texture.dims();

@@ -263,6 +263,8 @@ pub(super) struct Level {
     /// Factors of three channels.
     pub(super) balance: Buffer,
     layers: [usize; 3],
+    /// Cells of the channels of a batch.
+    batch_layers: [usize; 3],
     n_channels: usize,
     steps: Vec<Step>,
     rebalance: Bound,
@@ -379,7 +381,9 @@ impl Level {
             balance_stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&balance)])
         };
         let (rebalance, keep) = (bind_balance(1), bind_balance(0));
-        Ok(Self { params, moments, balance, layers, n_channels: problem.n_channels, steps, rebalance, keep })
+        let batch_layers = [dims[0], dims[1], dims[2] * scratch.channels_per_group];
+        let n_channels = problem.n_channels;
+        Ok(Self { params, moments, balance, layers, batch_layers, n_channels, steps, rebalance, keep })
     }
 
     /// Cells of all channels.
@@ -391,7 +395,7 @@ impl Level {
     /// (1 unless `balanced`).
     pub(super) fn sweep(&self, recorder: &mut Recorder, n: usize, balanced: bool) {
         for step in self.steps.iter().filter_map(|step| step.start.as_ref()) {
-            recorder.dispatch(step, self.layers);
+            recorder.dispatch(step, self.batch_layers);
         }
         let balance = if balanced { &self.rebalance } else { &self.keep };
         for idx in 0..n {
@@ -402,7 +406,7 @@ impl Level {
                     // Channels that are still to come get a stale factor here, and theirs before it is read.
                     recorder.dispatch(balance, [1, 1, self.n_channels]);
                 }
-                recorder.dispatch(&step.gather[into], self.layers);
+                recorder.dispatch(&step.gather[into], self.batch_layers);
             }
         }
     }

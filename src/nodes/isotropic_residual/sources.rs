@@ -59,7 +59,10 @@ pub(super) fn sources(
         Bind::Texture(&glow.cells),
     ];
     let [pack, format] = depths.tau.choices();
-    let choices = [pack, format, ("emission", medium.emission.is_some().to_string())];
+    let is_grey =
+        level.channels.iter().take(problem.n_channels).all(|channel| channel.k == level.channels[0].k);
+    let emission = medium.emission.is_some().to_string();
+    let choices = [pack, format, ("emission", emission), ("grey", is_grey.to_string())];
     let stage = gpu.stage("isotropic_residual/sources", &choices)?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), dims);
     run.finish(recorder)?;

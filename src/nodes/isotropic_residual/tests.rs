@@ -399,7 +399,7 @@ fn layouts_are_those_of_the_shaders() {
     assert_layout::<SourceParams>(
         "isotropic_residual/sources.wgsl",
         "SourceParams",
-        &[("pack", "4"), ("emission", "true")],
+        &[("pack", "4"), ("emission", "true"), ("grey", "true")],
     );
     let format = [("format", "r32float")];
     assert_layout::<solver::RestrictParams>("isotropic_residual/restrict.wgsl", "RestrictParams", &format);

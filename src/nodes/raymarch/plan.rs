@@ -180,13 +180,15 @@ fn bytes_of_beams(plan: &Plan, medium: &Medium, beams: &[Beam]) -> f64 {
         + beams.iter().filter(is_placed).count() as f64 * ARITHMETIC_OF_A_PLACE
 }
 
+/// A sample of a walk to the eye, with its arithmetic.
+const BYTES_OF_A_SAMPLE: f64 = 10.0;
+
 /// What a gathering moves: for each corner of filled blocks the beams, a walk to the eye through half of the
 /// medium, and the sums.
 fn bytes_of_gathering(plan: &Plan, medium: &Medium, of_beams: f64) -> f64 {
     let n_corners = (medium.blocks.n_filled() * CORNERS_OF_A_BLOCK) as f64;
     let way = 0.5 * medium.lattice.occupied.into_iter().sum::<usize>() as f64 / 3.0;
-    let walk = 4.0 * way * medium.blocks.samples_per_cell();
-    n_corners * (of_beams + walk + 16.0 * plan.channels.count as f64)
+    n_corners * (of_beams + BYTES_OF_A_SAMPLE * way + 16.0 * plan.channels.count as f64)
 }
 
 /// Of 8³ cells, with the faces that blocks share counted for each.

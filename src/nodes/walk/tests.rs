@@ -83,14 +83,6 @@ fn parallel_light_of_any_direction_and_number() {
 }
 
 #[test]
-fn empty_blocks_change_nothing() {
-    let mut random = Random(5);
-    let mut lights: Vec<Beam> = (0..6).map(|_| sun(random.direction(), 1.0)).collect();
-    lights.extend([DVec3::X, DVec3::NEG_Z].map(|direction| sun(direction, 1.0)));
-    assert_walked("one block", &Scene::new([24; 3], Filling::Random, 3.0).in_one_block(), &lights);
-}
-
-#[test]
 fn point_lights_inside_and_outside() {
     let lights = [
         point(DVec3::new(4.3, 3.1, 1.4), 1.0),
