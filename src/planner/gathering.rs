@@ -29,7 +29,7 @@ pub struct Gathering {
     pub g: f64,
     /// The least angle within which a window takes light off a beam, in radians; infinite for none.
     pub window: f64,
-    /// From the eye to the nearest matter, at least [cells]; 0 inside.
+    /// From the eye to the nearest matter in cells, at least; 0 inside.
     pub distance: f64,
     /// Optical depth of a cell that holds something, about.
     pub cell_tau: f64,
