@@ -15,6 +15,8 @@ use crate::graph::spec::Default;
 const LABEL: f32 = 112.0;
 /// Of a button with a sign.
 const BUTTON: f32 = 20.0;
+/// Between controls of a line (`theme.rs`).
+const GAP: f32 = 8.0;
 
 /// Shows a parameter and applies what is changed.
 pub fn show(ui: &mut Ui, slot: &mut Slot) {
@@ -250,7 +252,8 @@ fn tail(ui: &mut Ui, slot: &mut Slot) {
     }
     if !slot.spec.unit.is_empty() {
         // Cut where the panel is too narrow for it; the rest of the line is not pushed out.
-        let room = ui.available_width() - (tail_width(ui, slot) - unit_width(ui, slot));
+        let after = tail_width(ui, slot) - unit_width(ui, slot) - GAP;
+        let room = ui.available_width() - after;
         let size = vec2(unit_width(ui, slot).min(room).max(0.0), ui.spacing().interact_size.y);
         let unit = egui::Label::new(RichText::new(slot.spec.unit).weak()).truncate();
         ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| ui.add(unit));
@@ -310,11 +313,10 @@ fn unit_width(ui: &Ui, slot: &Slot) -> f32 {
 }
 
 fn tail_width(ui: &Ui, slot: &Slot) -> f32 {
-    let spacing = 8.0;
-    let unit = if slot.spec.unit.is_empty() { 0.0 } else { unit_width(ui, slot) + spacing };
-    let key = if slot.spec.kind.takes_keys() { BUTTON + spacing } else { 0.0 };
-    let mixed = if slot.is_mixed() { 32.0 + spacing } else { 0.0 };
-    mixed + unit + key + BUTTON + spacing
+    let unit = if slot.spec.unit.is_empty() { 0.0 } else { unit_width(ui, slot) + GAP };
+    let key = if slot.spec.kind.takes_keys() { BUTTON + GAP } else { 0.0 };
+    let mixed = if slot.is_mixed() { 32.0 + GAP } else { 0.0 };
+    mixed + unit + key + BUTTON + GAP
 }
 
 fn width_before_tail(ui: &Ui, slot: &Slot) -> f32 {
