@@ -54,9 +54,7 @@ pub fn run(project: Option<Project>, adapter: &AdapterChoice) -> Result<(), Edit
         };
         let kept = match place.take() {
             Some(Left { project: Some(project), why: Some(_), autosave }) => {
-                let kept = Autosave::write_down(&project, state_folder());
-                autosave.into_iter().for_each(|mut earlier| earlier.forget());
-                kept
+                Autosave::write_down(&project, state_folder(), autosave)
             }
             _ => "",
         };

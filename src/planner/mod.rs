@@ -8,8 +8,7 @@
 //! The error that a rule may make is zero or a rounding, but for these: a residual is left out where it is
 //! proven to be under [`ERROR_TARGET`] of the light scattered once ([`scattering`]), 14 or 26 directions
 //! stand for 50 ([`directions`]), beams may be gathered at corners within [`GATHERING_ERROR`] ([`gathering`]),
-//! and a constant environment is inflow, not ordinates, which is the more
-//! accurate of both.
+//! and a constant environment is inflow, not ordinates, which is the more accurate of both.
 //!
 //! [`Decision`]: crate::graph::Decision
 

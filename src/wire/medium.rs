@@ -118,6 +118,11 @@ pub fn occupancy(gpu: &Gpu, sigma_t: &Texture, emission: Option<&Emission>) -> R
 }
 
 impl Medium {
+    /// Whether it is the same in all channels.
+    pub fn is_grey(&self) -> bool {
+        self.albedo.iter().all(|albedo| *albedo == self.albedo[0])
+    }
+
     /// What bounds the medium, for the shaders.
     pub fn shape(&self) -> ShapeTexel {
         let single = |v: DVec3| v.as_vec3().to_array();

@@ -274,8 +274,11 @@ fn a_window_whose_device_is_lost_leaves_its_graph_to_the_next() {
     assert!(harness.query_by_label_contains("it was unplugged").is_some());
     assert!(harness.state().is_open && harness.state().project.can_undo());
     // Where there is no next one it is written down.
-    let said =
-        crate::editor::project::Autosave::write_down(&harness.state().project, Some(state.path().to_owned()));
+    let said = crate::editor::project::Autosave::write_down(
+        &harness.state().project,
+        Some(state.path().to_owned()),
+        None,
+    );
     assert!(said.contains("next start"), "{said}");
     assert_eq!(crate::editor::project::recoverable(state.path())[0].document.about, "mine");
 }

@@ -93,12 +93,16 @@ impl Autosave {
     }
 
     /// Writes down a graph whose window cannot go on, where it is not saved; says what has become of it.
-    pub fn write_down(project: &Project, state: Option<PathBuf>) -> &'static str {
+    /// What was written `earlier` goes once this is, not before.
+    pub fn write_down(project: &Project, state: Option<PathBuf>, earlier: Option<Self>) -> &'static str {
         let Some(state) = state.filter(|_| project.is_unsaved()) else { return "" };
         let mut autosave = Self::new(&state);
         let failed = autosave.tick(project, Instant::now()).or_else(|| autosave.finish());
         match failed {
-            None => "; what is not saved is offered at the next start",
+            None => {
+                earlier.into_iter().for_each(|mut earlier| earlier.forget());
+                "; what is not saved is offered at the next start"
+            }
             Some(_) => "; what is not saved could not be written down",
         }
     }

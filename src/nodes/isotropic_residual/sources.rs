@@ -59,10 +59,8 @@ pub(super) fn sources(
         Bind::Texture(&glow.cells),
     ];
     let [pack, format] = depths.tau.choices();
-    let is_grey =
-        level.channels.iter().take(problem.n_channels).all(|channel| channel.k == level.channels[0].k);
     let emission = medium.emission.is_some().to_string();
-    let choices = [pack, format, ("emission", emission), ("grey", is_grey.to_string())];
+    let choices = [pack, format, ("emission", emission), ("grey", medium.is_grey().to_string())];
     let stage = gpu.stage("isotropic_residual/sources", &choices)?;
     recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), dims);
     run.finish(recorder)?;

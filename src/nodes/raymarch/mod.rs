@@ -211,7 +211,7 @@ fn choices(
     };
     [
         ("channels", plan.channels.count.to_string()),
-        ("grey", is_grey(medium).to_string()),
+        ("grey", medium.is_grey().to_string()),
         ("voxels", medium.homogeneous.is_none().to_string()),
         ("points", points.to_string()),
         ("peak", plan.has_peak.to_string()),
@@ -231,11 +231,6 @@ fn choices(
         ("n_beams", n_beams),
         ("pack", beams.pack().to_string()),
     ]
-}
-
-/// Whether matter is the same in all channels.
-fn is_grey(medium: &Medium) -> bool {
-    medium.albedo.iter().all(|albedo| *albedo == medium.albedo[0])
 }
 
 /// Whether some of the beams leave light to the environment's stack.

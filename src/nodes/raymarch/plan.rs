@@ -172,7 +172,7 @@ fn bytes_of_beams(plan: &Plan, medium: &Medium, beams: &[Beam]) -> f64 {
         return 0.0;
     }
     let is_placed = |beam: &&Beam| medium.homogeneous.is_some() || matches!(beam.place, Place::Point(_));
-    let n_peaks = if super::is_grey(medium) { 1 } else { plan.channels.count };
+    let n_peaks = if medium.is_grey() { 1 } else { plan.channels.count };
     let peak = if plan.has_peak { 4.0 * n_peaks as f64 } else { 0.0 };
     // Four of many share a texel of half floats.
     let depth = if beams.len() <= 2 { 4.0 } else { 2.0 };

@@ -7,7 +7,7 @@
 //! (`planner::gathering`). Corners that no sample in matter reads stay empty. Tested against the f64 oracle
 //! (`oracle/sums.rs`) and against the march that looks up every beam.
 
-use super::{MarchParams, Run, has_window, is_grey, plan::Plan};
+use super::{MarchParams, Run, has_window, plan::Plan};
 use crate::gpu::{Bind, Buffer, Format, Texture};
 use crate::graph::NodeError;
 use crate::mirror;
@@ -54,7 +54,7 @@ pub(super) fn gather(
     let sums = gpu.texture3("sums of the beams", dims, Format::Rgba32Float, remedy)?;
     let choices = [
         ("channels", n_channels.to_string()),
-        ("grey", is_grey(medium).to_string()),
+        ("grey", medium.is_grey().to_string()),
         ("peak", plan.has_peak.to_string()),
         ("window", has_window(beams).to_string()),
         ("pack", beams.pack().to_string()),
