@@ -4,6 +4,9 @@
 //! wires from inside before wires from outside, that order is kept by leading the wires from inside out of
 //! the group and in again, because those from outside come first otherwise.
 
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
 use indexmap::IndexMap;
 
 use super::no_node;
@@ -11,7 +14,7 @@ use crate::graph::document::{Document, End, Node, Wire, is_node_name};
 
 impl Document {
     /// Makes a group of nodes, under a free name like `like`, and gives the name. Wires that cross its edge
-    /// become its ports.
+    /// become its ports; inputs that read the same share one.
     ///
     /// # Errors
     /// Without nodes, where one of them is not there, or where `like` is no name.
@@ -63,9 +66,10 @@ impl Document {
         for end in rest.outputs.values_mut().filter(|end| is_in(end)) {
             *end = of_group(port_of(&mut inside.outputs, end, end.clone()));
         }
+        (rest.wires, rest.bends) = (wires, bends);
+        join_inputs(&mut inside, &mut rest, &group);
         rest.layout.retain(|name, _| !names.contains(name));
         rest.layout.extend(middle(&inside).map(|at| (group.clone(), at)));
-        (rest.wires, rest.bends) = (wires, bends);
         let n_before = self.nodes.keys().take(first).filter(|name| !names.contains(name)).count();
         rest.nodes.shift_insert(n_before, group.clone(), Node::group(inside));
         *self = rest;
@@ -163,6 +167,30 @@ fn middle(document: &Document) -> Option<[f64; 2]> {
     let count = document.layout.len() as f64;
     let mean = |axis: usize| (document.layout.values().map(|at| at[axis]).sum::<f64>() / count).round();
     (count > 0.0).then(|| [mean(0), mean(1)])
+}
+
+/// Makes one port of a new group's inputs that read the same outputs in the same order, and are the same inputs of the
+/// graph around: the first keeps its name. Of inputs that share a part of what they read each keeps its own.
+fn join_inputs(inside: &mut Document, around: &mut Document, group: &str) {
+    let mut known: HashMap<(Vec<End>, Vec<String>), String> = HashMap::new();
+    let ports: Vec<String> = inside.inputs.keys().cloned().collect();
+    for port in ports {
+        let this = End::new(group, &port);
+        let wires = around.wires.iter().filter(|wire| wire.to == this);
+        let outputs = wires.map(|wire| wire.from.clone()).collect();
+        let inputs = around.inputs.iter().filter(|(_, ends)| ends.contains(&this));
+        let inputs = inputs.map(|(name, _)| name.clone()).collect();
+        match known.entry((outputs, inputs)) {
+            Entry::Vacant(entry) => drop(entry.insert(port)),
+            Entry::Occupied(entry) => {
+                let ends = inside.inputs.shift_remove(&port).unwrap_or_default();
+                inside.inputs[entry.get()].extend(ends);
+                around.wires.retain(|wire| wire.to != this);
+                around.drop_bends();
+                around.inputs.values_mut().for_each(|ends| ends.retain(|end| *end != this));
+            }
+        }
+    }
 }
 
 /// The port of a group that stands for `end`; a new one has the port's own name, or `node_port` where that is

@@ -107,6 +107,35 @@ fn ports_places_and_bends_of_a_group() {
 }
 
 #[test]
+fn what_reads_the_same_is_one_port() {
+    let text = r#"{"tyndall": 1, "nodes": {"a": {"type": "number", "x": 3}, "b": {"type": "number", "x": 2},
+          "s": {"type": "sum"}, "t": {"type": "sum"}, "pair": {"type": "pair"}, "paint": {"type": "paint"}},
+        "wires": ["b.light -> s.lights", "a.light -> s.lights", "a.light -> t.lights", "b.light -> t.lights",
+          "a.light -> pair.a", "a.light -> pair.b", "pair.total -> paint.light"],
+        "bends": {"a.light -> pair.b": [[50, 50]]}}"#;
+    let before = Document::parse(text, Path::new("")).unwrap();
+    let mut document = before.clone();
+    document.make_group(&strings(&["s", "t", "pair"]), "g").unwrap();
+    let inside = document.inside("g").unwrap();
+    let ports: Vec<_> = inside.inputs.iter().map(|(name, ends)| (name.as_str(), ends.len())).collect();
+    // The order of what a port reads counts.
+    assert_eq!(ports, [("lights", 1), ("t_lights", 1), ("a", 2)]);
+    assert_eq!(document.wires.iter().filter(|wire| wire.to.port == "a").count(), 1);
+    assert!(document.bends.is_empty());
+    assert_sound(&document);
+    assert_eq!(keys(&document), keys(&before));
+    // Of a group in a group the same inputs of the outer one are one, too.
+    document.inside_mut("g").unwrap().make_group(&strings(&["pair"]), "inner").unwrap();
+    let outer = document.inside("g").unwrap();
+    assert_eq!(outer.inside("inner").unwrap().inputs["a"].len(), 2);
+    assert_eq!(outer.inputs["a"], [End::new("inner", "a")]);
+    assert_eq!(keys(&document), keys(&before));
+    document.inside_mut("g").unwrap().ungroup("inner").unwrap();
+    document.ungroup("g").unwrap();
+    assert_eq!((keys(&document), document.wires.len()), (keys(&before), before.wires.len()));
+}
+
+#[test]
 fn groups_of_groups() {
     let mut document = document();
     document.make_group(&strings(&["s", "t"]), "inner").unwrap();
