@@ -226,18 +226,19 @@ impl Viewport {
             overlay::sides(ui, area, x, [left, &self.wipe.name()]);
         }
         let lens = scene.camera.and_then(|camera| Lens::new(camera, rect));
+        let mut told = Vec::new();
         if let (Some(flat), Some(lens)) = (scene.flat, &lens) {
-            slice::in_picture(&mut self.slice, ui, (area, rect), &response, lens, flat);
+            told.extend(slice::in_picture(&mut self.slice, ui, (area, rect), &response, lens, flat));
+        }
+        if let Some(at) = response.hover_pos() {
+            told.extend(overlay::readout(ui, area, rect, at, image, scene.camera, &self.layer));
         }
         if scene.is_busy && !picture.level.is_full() {
             overlay::refining(ui, area);
         }
-        overlay::guides(ui, area, rect, scene.camera);
+        overlay::guides(ui, area, rect, scene.camera, &told);
         if let (true, Some(shown)) = (self.shows_histogram, &self.shown[0]) {
             overlay::histogram(ui, area, &shown.histogram, &self.layer);
-        }
-        if let Some(at) = response.hover_pos() {
-            overlay::readout(ui, area, rect, at, image, scene.camera, &self.layer);
         }
         if let Some((frames, frame)) =
             scene.look.and_then(|look| hand::keys(project.document(), look.camera.as_ref()?))

@@ -251,7 +251,8 @@ impl Slice {
         self.texture = Some((cut.image.clone(), texture));
     }
 
-    /// The legend, and value and place at this share of the plane, so far above the area's lower edge.
+    /// The legend, and value and place at this share of the plane, so far above the area's lower edge; where the value
+    /// stands.
     fn tell(
         &self,
         ui: &mut Ui,
@@ -260,16 +261,17 @@ impl Slice {
         cut: &Cut,
         share: Option<[f64; 2]>,
         above: f32,
-    ) {
+    ) -> Option<Rect> {
         let value = share.and_then(|share| cut.value(share));
         let quantity = self.quantity(document);
-        if let (Some(share), Some(value)) = (share, value) {
+        let told = share.zip(value).map(|(share, value)| {
             let text = readout(&quantity, value, cut.plane.at(share));
             let corner = area.right_bottom() + vec2(-10.0, -above);
-            overlay::pill(ui, "slice value", corner, Align2::RIGHT_BOTTOM, &text);
-        }
+            overlay::pill(ui, "slice value", corner, Align2::RIGHT_BOTTOM, &text)
+        });
         let names = [quantity[0].as_str(), quantity[1].as_str()];
         legend::show(ui, area, self.colormap, names, cut.plane.range, value);
+        told
     }
 
     /// What the numbers are, and their unit; empty where nobody knows.

@@ -32,18 +32,12 @@ pub fn show(slice: &mut Slice, ui: &mut Ui, area: Rect, response: &Response, doc
     painter.rect_stroke(rect, 0.0, line, StrokeKind::Outside);
     axes(ui, area, plane.axes());
     let points_per_m = f64::from(rect.width()) / (plane.step[0].length() * plane.size[0] as f64);
-    overlay::scale_bar(
-        ui,
-        area,
-        overlay::corner(area) + vec2(52.0, 18.0),
-        points_per_m,
-        ui.visuals().text_color(),
-    );
     let share = response.hover_pos().map(|at| {
         let share = (at - rect.min) / rect.size();
         [f64::from(share.x), f64::from(share.y)]
     });
-    slice.tell(ui, area, document, cut, share, 10.0);
+    let told = slice.tell(ui, area, document, cut, share, 10.0);
+    overlay::scale_bar(ui, area, points_per_m, ui.visuals().text_color(), told.as_slice());
     if let Some(problem) = &slice.problem {
         overlay::problem(ui, area, "The slice plane", problem);
     }
@@ -66,9 +60,10 @@ pub fn show(slice: &mut Slice, ui: &mut Ui, area: Rect, response: &Response, doc
 
 /// Which axes of the world go right and up.
 fn axes(ui: &Ui, area: Rect, [right, up]: [String; 2]) {
-    let painter = ui.painter().with_clip_rect(area);
-    let corner = overlay::corner(area);
+    let Some(corner) = overlay::axes_at(area) else { return };
+    let painter = ui.painter();
     let ink = ui.visuals().text_color();
+    overlay::say_axes(ui, corner, &format!("Axes of the slice: {right} to the right, {up} up"));
     for (way, name) in [(vec2(22.0, 0.0), right), (vec2(0.0, -22.0), up)] {
         painter.arrow(corner, way, Stroke::new(1.5, ink));
         painter.text(corner + way * 1.4, Align2::CENTER_CENTER, name, FontId::proportional(11.0), ink);

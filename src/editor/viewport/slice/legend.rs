@@ -15,7 +15,11 @@ pub fn show(ui: &mut Ui, area: Rect, map: &str, [name, unit]: [&str; 2], range: 
     let Some(map) = Colormap::named(map) else { return };
     // Above it the picture says that it is refined, below it stand two lines of values.
     let free = Rect::from_min_max(area.min + vec2(0.0, 40.0), area.max - vec2(0.0, 76.0));
-    let height = (free.height() - 46.0).clamp(60.0, 220.0);
+    let height = (free.height() - 46.0).min(220.0);
+    // Colors that cannot be told apart, or a legend over half the picture, say nothing.
+    if height < 40.0 || area.width() < 300.0 {
+        return;
+    }
     let title = if unit.is_empty() { name.to_owned() } else { format!("{name} [{unit}]") };
     let font = FontId::proportional(11.0);
     let painter = ui.painter().with_clip_rect(area);

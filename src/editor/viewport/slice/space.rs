@@ -20,7 +20,7 @@ const OPACITY: f32 = 0.88;
 /// Half of the handle's side, in points.
 const GRIP: f32 = 9.0;
 
-/// Draws the plane over a picture that lies at `rect`, its legend and its handle.
+/// Draws the plane over a picture that lies at `rect`, its legend and its handle; where a value is told.
 pub fn show(
     slice: &mut Slice,
     ui: &mut Ui,
@@ -28,12 +28,12 @@ pub fn show(
     response: &Response,
     lens: &Lens,
     document: &Document,
-) {
+) -> Option<Rect> {
     slice.develop(ui);
     if let Some(problem) = &slice.problem {
         overlay::problem(ui, area, "The slice plane", problem);
     }
-    let (Some(cut), Some((_, texture))) = (&slice.cut, &slice.texture) else { return };
+    let (Some(cut), Some((_, texture))) = (&slice.cut, &slice.texture) else { return None };
     let plane = cut.plane;
     let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
     let mut mesh = Mesh::with_texture(texture.id());
@@ -62,8 +62,9 @@ pub fn show(
         painter.add(Shape::closed_line(outline, Stroke::new(1.0, Color32::from_white_alpha(150))));
     }
     let share = response.hover_pos().filter(|at| rect.contains(*at)).and_then(|at| plane.hit(lens.ray(at)));
-    slice.tell(ui, area, document, cut, share, 40.0);
+    let told = slice.tell(ui, area, document, cut, share, 40.0);
     handle(slice, ui, area.intersect(rect), lens);
+    told
 }
 
 /// A knob in the middle of the plane, on an arrow along its normal.

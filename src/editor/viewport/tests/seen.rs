@@ -70,6 +70,39 @@ fn histogram_and_scale_are_told() {
     assert!(!has(&harness, "Histogram of beauty"));
 }
 
+#[test]
+fn where_there_is_no_room_things_go_in_an_order() {
+    let mut harness = window();
+    harness.state_mut().viewport.toggle_histogram();
+    harness.state_mut().viewport.slice = slice::with_cut();
+    // From what can be done without first to what stays longest.
+    let names = ["Legend", "Axes", "Histogram of", "Scale bar", "beauty 0."];
+    let mut lowest = names.map(|_| f32::INFINITY);
+    for height in (96..=560).rev().step_by(4) {
+        harness.set_size(vec2(SIZE.x, height as f32));
+        harness.remove_cursor();
+        for is_pointed in [false, true] {
+            harness.run_steps(2);
+            let picture = harness.get_by_label("Picture").rect();
+            if is_pointed {
+                // Not on the handle of the slice.
+                harness.hover_at(picture.center() + vec2(0.0, 0.4 * picture.height()));
+                harness.run_steps(2);
+            }
+            let rects = names.map(|name| harness.query_by_label_contains(name).map(|node| node.rect()));
+            for (idx, rect) in rects.iter().enumerate().filter_map(|(idx, rect)| Some((idx, (*rect)?))) {
+                assert!(picture.contains_rect(rect), "{} at {height}: {rect:?} in {picture:?}", names[idx]);
+                lowest[idx] = picture.height();
+                for (other, name) in rects.iter().zip(names).skip(idx + 1) {
+                    let covers = other.is_some_and(|other| other.shrink(0.5).intersects(rect));
+                    assert!(!covers, "{} and {name} at {height}", names[idx]);
+                }
+            }
+        }
+    }
+    assert!(lowest.is_sorted_by(|a, b| a > b) && lowest[0] < 250.0 && lowest[3] < 45.0, "{lowest:?}");
+}
+
 /// What the viewport looks like, with all that can be drawn over a picture, in both themes.
 #[test]
 fn it_looks_as_it_did() {
