@@ -143,6 +143,7 @@ fn panel(document: &Document, side: Side, center: Pos2, away: f32) -> NodeShape 
             (None, _) => "what it stands for is not there; remove it".to_owned(),
         };
         PortShape {
+            beside: None,
             kind: spec.map(|spec| spec.kind),
             many: false,
             doc,

@@ -8,7 +8,7 @@ use egui::{Align2, Color32, CornerRadius, Pos2, Rect, Shape, Stroke, StrokeKind,
 
 use super::super::{NodeState, NodeStatus};
 use super::paint::Brush;
-use super::scene::{FOOTER, NodeShape, PortShape, ROW, THUMBNAIL};
+use super::scene::{FOOTER, NodeShape, PortShape, ROW, THUMBNAIL, WIDTH};
 use super::told::{foot, left_out};
 use crate::graph::Side;
 
@@ -259,6 +259,22 @@ impl Brush<'_> {
         }
     }
 
+    /// Size of a port's name, and the width that it may take. Where two in a row have no room both are smaller, and cut
+    /// only where they could not be read.
+    pub(super) fn label_room(&self, port: &PortShape) -> (f32, f32) {
+        let zoom = self.view.zoom;
+        let size = (11.5 * zoom).max((8.0_f32).min(ROW * zoom));
+        let room = (WIDTH - 2.0 * LABEL_INSET) * zoom;
+        let Some(beside) = &port.beside else { return (size, room) };
+        let [own, other] = [&port.port.end.port, beside].map(|text| self.width(text, size));
+        let free = room - LABEL_GAP;
+        if own + other <= free {
+            return (size, own + 1.0);
+        }
+        let smaller = (size * free / (own + other)).max(6.5);
+        ((2.0 * smaller).floor() / 2.0, free * own / (own + other))
+    }
+
     /// A port and its name.
     pub fn port(&self, port: &PortShape, look: PortLook) {
         let zoom = self.view.zoom;
@@ -283,17 +299,21 @@ impl Brush<'_> {
             return;
         }
         let (align, dx) = match port.port.side {
-            Side::Input => (Align2::LEFT_CENTER, 11.0),
-            Side::Output => (Align2::RIGHT_CENTER, -11.0),
+            Side::Input => (Align2::LEFT_CENTER, LABEL_INSET),
+            Side::Output => (Align2::RIGHT_CENTER, -LABEL_INSET),
         };
         // What must be wired and is not stands out.
         let missing = port.is_required && !port.is_wired;
         let text = if missing { self.theme.text } else { self.theme.weak }.gamma_multiply(dim);
-        let size = (11.5 * zoom).max((8.0_f32).min(ROW * zoom));
-        let width = super::scene::WIDTH * zoom * 0.6;
+        let (size, width) = self.label_room(port);
         self.text(at + vec2(dx * zoom, 0.0), align, &port.port.end.port, size, text, width);
     }
 }
+
+/// From a port to its name, in points of the canvas.
+const LABEL_INSET: f32 = 11.0;
+/// Between the names of two ports in a row, in points of the screen.
+const LABEL_GAP: f32 = 6.0;
 
 /// Zooms from which names, ports, their labels, types, and words of badges are drawn.
 const NEAR_NAMES: f32 = 0.34;

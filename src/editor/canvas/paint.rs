@@ -28,8 +28,7 @@ impl Brush<'_> {
         if size < SMALLEST || width < size {
             return Rect::from_pos(at);
         }
-        let font = FontId::proportional((size * 2.0).round() / 2.0);
-        let mut job = LayoutJob::single_section(text.to_owned(), TextFormat::simple(font, color));
+        let mut job = LayoutJob::single_section(text.to_owned(), TextFormat::simple(font(size), color));
         job.wrap = TextWrapping { max_rows: 1, break_anywhere: true, ..TextWrapping::wrap_at_width(width) };
         job.break_on_newline = false;
         let galley = self.painter.layout_job(job);
@@ -48,13 +47,15 @@ impl Brush<'_> {
         color: Color32,
         width: f32,
     ) {
-        let font = FontId::proportional((size * 2.0).round() / 2.0);
-        let has_room = |text: &&String| {
-            self.painter.layout_no_wrap((*text).clone(), font.clone(), color).size().x <= width
-        };
+        let has_room = |text: &&String| self.width(text, size) <= width;
         if let Some(text) = texts.iter().find(has_room).or(texts.last()) {
             self.text(at, align, text, size, color, width);
         }
+    }
+
+    /// How wide text of a size is on the screen.
+    pub fn width(&self, text: &str, size: f32) -> f32 {
+        self.painter.layout_no_wrap(text.to_owned(), font(size), Color32::PLACEHOLDER).size().x
     }
 
     /// Dots, farther apart when seen from afar.
@@ -108,6 +109,10 @@ impl Brush<'_> {
             self.painter.circle_filled(*bend, (4.5 * self.view.zoom).max(2.5), color);
         }
     }
+}
+
+fn font(size: f32) -> FontId {
+    FontId::proportional((size * 2.0).round() / 2.0)
 }
 
 /// How a wire is drawn.

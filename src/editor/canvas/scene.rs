@@ -59,6 +59,8 @@ pub struct PortShape {
     pub many: bool,
     pub doc: String,
     pub at: Pos2,
+    /// Name of the port of the other side in the same row, which shares the row's width.
+    pub beside: Option<String>,
     pub is_wired: bool,
     /// An input that must not stay empty.
     pub is_required: bool,
@@ -298,6 +300,7 @@ fn ports(shape: &NodeShape, node: &Node, catalog: Catalog, wires: &[&Wire]) -> V
             let x = if side == Side::Input { 0.0 } else { WIDTH };
             found.push(PortShape {
                 is_wired: ends.contains(&end),
+                beside: None,
                 port: Port { end, side },
                 kind: spec.map(|spec| spec.kind),
                 many: spec.is_some_and(|spec| spec.many),
@@ -316,6 +319,12 @@ fn ports(shape: &NodeShape, node: &Node, catalog: Catalog, wires: &[&Wire]) -> V
                 push(end.clone(), None, &mut found);
             }
         }
+    }
+    let n_inputs = found.iter().filter(|port| port.port.side == Side::Input).count();
+    let (inputs, outputs) = found.split_at_mut(n_inputs);
+    for (input, output) in inputs.iter_mut().zip(outputs) {
+        input.beside = Some(output.port.end.port.clone());
+        output.beside = Some(input.port.end.port.clone());
     }
     found
 }

@@ -205,7 +205,8 @@ impl Canvas {
         let line = ui.horizontal(|ui| {
             let (mark, _) = ui.allocate_exact_size(vec2(6.0, 14.0), egui::Sense::hover());
             ui.painter().rect_filled(mark, 2.0, theme.category(Some(spec.category)));
-            let button = egui::Button::selectable(is_chosen, text).truncate();
+            // What is right of a text pushes it to the left; else it stands in the middle.
+            let button = egui::Button::selectable(is_chosen, text).truncate().right_text("");
             let button = ui.add(button.min_size(vec2(ui.available_width(), 20.0)));
             let label = || format!("add {}", spec.id);
             button.widget_info(|| egui::WidgetInfo::labeled(egui::WidgetType::Button, true, label()));

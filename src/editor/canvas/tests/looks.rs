@@ -2,10 +2,15 @@
 
 use std::sync::Arc;
 
+use super::super::paint::Brush;
+use super::super::scene::{self, PortShape, Scene};
+use super::super::theme::Theme;
+use super::super::view::View;
 use super::*;
 use crate::editor::snapshot::assert_looks;
 use crate::editor::{NodeState, NodeStatus};
-use crate::graph::{Decision, Report};
+use crate::graph::{Decision, Report, Side};
+use crate::nodes::catalog;
 
 fn statuses() -> Statuses {
     let report = Report {
@@ -54,6 +59,36 @@ fn what_is_off_the_screen_is_no_widget() {
         harness.query_by_label("node sun").is_none()
             && harness.query_by_label("input march.camera").is_none()
     );
+}
+
+#[test]
+fn names_of_ports_in_a_row_do_not_touch() {
+    let text = r#"{"tyndall": 1, "nodes": {"blur": {"type": "prefilter"}, "split": {"type": "light_decomposition"}}}"#;
+    let scene = Scene::new(&Document::parse(text, Path::new("")).unwrap(), catalog());
+    let mut harness = Harness::new_ui(move |ui| {
+        let painter = ui.painter().clone();
+        for zoom in [0.42, 0.49, 0.6, 0.8, 1.0, 2.0] {
+            let view = View { zoom, ..View::default() };
+            let brush = Brush { painter: &painter, view, theme: Theme::of(ui) };
+            let mut n_rows = 0;
+            for node in &scene.nodes {
+                let [inputs, outputs] = [Side::Input, Side::Output].map(|side| node.side(side));
+                for pair in inputs.zip(outputs) {
+                    let drawn = |port: &PortShape| {
+                        let (size, width) = brush.label_room(port);
+                        assert!(size >= 6.5, "{size}");
+                        // What has no room in its width is cut to it.
+                        brush.width(&port.port.end.port, size).min(width)
+                    };
+                    let free = (scene::WIDTH - 22.0) * zoom - drawn(pair.0) - drawn(pair.1);
+                    assert!(free >= 5.0, "{free} between the names of {} at {zoom}", node.name);
+                    n_rows += 1;
+                }
+            }
+            assert_eq!(n_rows, 3);
+        }
+    });
+    harness.run_steps(2);
 }
 
 #[test]
