@@ -12,6 +12,11 @@ struct WalkParams {
     n_beams: u32,
     corners: vec3u,
     cell_m: f32,
+    // Layer of corners where the threads begin.
+    first: u32,
+    pad_0: u32,
+    pad_1: u32,
+    pad_2: u32,
     beams: array<Beam, 4>,
 }
 
@@ -21,7 +26,8 @@ struct WalkParams {
 @group(2) @binding(0) var tau: texture_storage_3d<{format}, write>;
 
 @compute @workgroup_size(8, 8, 1)
-fn walk_corners(@builtin(global_invocation_id) id: vec3u) {
+fn walk_corners(@builtin(global_invocation_id) thread: vec3u) {
+    let id = thread + vec3u(0u, 0u, params.first);
     if any(id >= params.corners) {
         return;
     }

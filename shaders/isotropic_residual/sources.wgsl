@@ -9,8 +9,9 @@ struct SourceParams {
     level: Level,
     n_beams: u32,
     packs_per_column: u32,
-    pad_0: u32,
-    pad_1: u32,
+    // Layer of cells where the threads begin.
+    first: u32,
+    pad: u32,
 }
 
 @group(0) @binding(0) var<uniform> params: SourceParams;
@@ -43,8 +44,9 @@ fn mean_inverse_square(cell: vec3f, position: vec3f, cell_m: f32) -> f32 {
 }
 
 @compute @workgroup_size(8, 8, 1)
-fn isotropic_residual_sources(@builtin(global_invocation_id) id: vec3u) {
+fn isotropic_residual_sources(@builtin(global_invocation_id) thread: vec3u) {
     let level = params.level;
+    let id = thread + vec3u(0u, 0u, params.first);
     if any(id >= level.dims) {
         return;
     }

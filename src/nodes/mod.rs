@@ -11,6 +11,7 @@ use crate::gpu::{Gpu, GpuError, Recorder};
 use crate::graph::{Catalog, Inputs, NodeError, NodeSpec, Params, Report, Value};
 use crate::wire::{Beams, Medium};
 
+mod bands;
 mod bounce_lights;
 mod camera;
 mod environment;

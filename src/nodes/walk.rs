@@ -4,7 +4,10 @@
 //! the medium or to the light (DESIGN 6.3); a homogeneous shape in closed form. Exact but for the
 //! samples; its cost is corners × beams × the way through the medium.
 
+use std::ops::Range;
+
 use super::Run;
+use super::bands::Bands;
 use crate::gpu::{Bind, Recorder, Sampler};
 use crate::graph::{NodeError, StageWork};
 use crate::mirror;
@@ -20,6 +23,10 @@ mirror! {
         n_beams: u32,
         corners: [u32; 3],
         cell_m: f32,
+        first: u32,
+        pad_0: u32,
+        pad_1: u32,
+        pad_2: u32,
         beams: [BeamTexel; 4],
     }
 }
@@ -32,10 +39,11 @@ pub(super) fn walk(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtla
     let atlas = TauAtlas::new(run.gpu, &medium.lattice, beams.len())?;
     let sampler = run.gpu.linear_sampler();
     for (pack, four) in beams.chunks(atlas.pack).enumerate() {
-        // A submission each, so that a cancel is heard between packs.
-        let mut recorder = run.gpu.recorder("walk to the light");
-        record(&mut recorder, run, medium, &sampler, &atlas, pack, four)?;
-        run.finish(recorder)?;
+        for layers in Bands::new(atlas.corners[2], atlas.corners[2]) {
+            let mut recorder = run.gpu.recorder("walk to the light");
+            record(&mut recorder, run, medium, &sampler, &atlas, (pack, four), layers)?;
+            run.finish(recorder)?;
+        }
     }
     Ok(atlas)
 }
@@ -68,8 +76,8 @@ fn record(
     medium: &Medium,
     sampler: &Sampler,
     atlas: &TauAtlas,
-    pack: usize,
-    beams: &[Beam],
+    (pack, beams): (usize, &[Beam]),
+    layers: Range<usize>,
 ) -> Result<(), NodeError> {
     let params = WalkParams {
         shape: medium.shape(),
@@ -77,12 +85,16 @@ fn record(
         n_beams: beams.len() as u32,
         corners: atlas.corners.map(|n| n as u32),
         cell_m: medium.lattice.cell_m as f32,
+        first: layers.start as u32,
+        pad_0: 0,
+        pad_1: 0,
+        pad_2: 0,
         beams: std::array::from_fn(|n| beams[n.min(beams.len() - 1)].texel([0.0; 3])),
     };
     let stage = run.gpu.stage("walk", &atlas.choices())?;
     let inputs = [Bind::Texture(&medium.sigma_t), Bind::Sampler(sampler)];
     let bound = stage.bind(run.gpu, &params, &inputs, &[Bind::Texture(&atlas.texture)]);
-    recorder.dispatch(&bound, atlas.corners);
+    recorder.dispatch(&bound, [atlas.corners[0], atlas.corners[1], layers.len()]);
     Ok(())
 }
 

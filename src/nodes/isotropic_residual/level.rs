@@ -1,14 +1,20 @@
 //! One grid of the cascade: its shader parameters, fields and bound stages.
 
-use crate::gpu::{Bind, Bound, Buffer, Format, Gpu, GpuError, Recorder, Stage, Texture};
+use crate::gpu::{Bind, Bound, Buffer, Format, Gpu, GpuError, Stage, Texture};
+use crate::graph::NodeError;
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
 use crate::optics::directions::{LineDirection, LineSet};
 use crate::wire::{Channels, Medium, Surfaces};
 
+use super::super::Run;
+use super::super::bands::Bands;
 use super::walls::walls;
 
 pub(super) const REMEDY: &str = "lower medium.max_resolution or medium.max_cells";
+
+/// Sweeps of one submission at the most; of as many the moments are not rounded in between.
+pub(super) const SWEEPS_AT_ONCE: usize = 4;
 
 mirror! {
     /// `Channel` of `common.wgsl`.
@@ -392,15 +398,19 @@ impl Level {
     }
 
     /// `n` sweeps, from the moments to the moments, each followed by the factor that balances power
-    /// (1 unless `balanced`).
-    pub(super) fn sweep(&self, recorder: &mut Recorder, n: usize, balanced: bool) {
-        for step in self.steps.iter().filter_map(|step| step.start.as_ref()) {
-            recorder.dispatch(step, self.batch_layers);
-        }
+    /// (1 unless `balanced`). Between submissions a cancel is heard.
+    pub(super) fn sweep(&self, run: &Run, n: usize, balanced: bool) -> Result<(), NodeError> {
         let balance = if balanced { &self.rebalance } else { &self.keep };
-        for idx in 0..n {
-            let into = usize::from(idx + 1 == n);
-            for step in &self.steps {
+        let n_steps = self.steps.len();
+        for part in Bands::new(n * n_steps, SWEEPS_AT_ONCE * n_steps) {
+            let mut recorder = run.gpu.recorder("isotropic_residual");
+            if part.start == 0 {
+                for step in self.steps.iter().filter_map(|step| step.start.as_ref()) {
+                    recorder.dispatch(step, self.batch_layers);
+                }
+            }
+            for (idx, step) in part.map(|at| (at / n_steps, &self.steps[at % n_steps])) {
+                let into = usize::from(idx + 1 == n);
                 recorder.dispatch(&step.sweep, step.threads);
                 if step.completes {
                     // Channels that are still to come get a stale factor here, and theirs before it is read.
@@ -408,7 +418,9 @@ impl Level {
                 }
                 recorder.dispatch(&step.gather[into], self.batch_layers);
             }
+            run.finish(recorder)?;
         }
+        Ok(())
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::super::Run;
-use super::level::{Level, Problem, REMEDY, Scratch};
+use super::level::{Level, Problem, REMEDY, SWEEPS_AT_ONCE, Scratch};
 use super::sources::Sources;
 use super::{Effort, Kind, thick};
 use crate::gpu::{Bind, Format, Texture};
@@ -21,8 +21,6 @@ mirror! {
 
 /// Grids are halved while an axis is longer than this.
 const COARSEST: usize = 8;
-/// Sweeps of one submission, between which a cancel is heard.
-const SWEEPS_AT_ONCE: usize = 4;
 /// `reference` stops when phi changes by less than this from one round of sweeps to the next, or after so
 /// many rounds.
 const CONVERGED: f64 = 1e-5;
@@ -111,9 +109,7 @@ fn levels(
 /// So many sweeps of a level.
 pub(super) fn sweep(run: &Run, level: &Level, n: usize, balanced: bool) -> Result<(), NodeError> {
     for first in (0..n).step_by(SWEEPS_AT_ONCE) {
-        let mut recorder = run.gpu.recorder("isotropic_residual");
-        level.sweep(&mut recorder, SWEEPS_AT_ONCE.min(n - first), balanced);
-        run.finish(recorder)?;
+        level.sweep(run, SWEEPS_AT_ONCE.min(n - first), balanced)?;
     }
     Ok(())
 }

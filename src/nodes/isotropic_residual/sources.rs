@@ -5,6 +5,7 @@
 //! block of 0.7 optical depths a cell at g 0, half in one of 5 (`tests/power.rs`).
 
 use super::super::Run;
+use super::super::bands::Bands;
 use super::level::{LevelParams, Problem, REMEDY};
 use crate::gpu::{Bind, Buffer, Format, Texture};
 use crate::graph::NodeError;
@@ -17,8 +18,8 @@ mirror! {
         level: LevelParams,
         n_beams: u32,
         packs_per_column: u32,
-        pad_0: u32,
-        pad_1: u32,
+        first: u32,
+        pad: u32,
     }
 }
 
@@ -47,10 +48,9 @@ pub(super) fn sources(
         level,
         n_beams: if beams.tau.is_some() { beams.n_at_corners() as u32 } else { 0 },
         packs_per_column: depths.tau.packs_per_column as u32,
-        pad_0: 0,
-        pad_1: 0,
+        first: 0,
+        pad: 0,
     };
-    let mut recorder = gpu.recorder("sources");
     let glow = Emission::or_none(medium.emission.as_ref(), gpu)?;
     let inputs = [
         Bind::Texture(&medium.sigma_t),
@@ -62,8 +62,13 @@ pub(super) fn sources(
     let emission = medium.emission.is_some().to_string();
     let choices = [pack, format, ("emission", emission), ("grey", medium.is_grey().to_string())];
     let stage = gpu.stage("isotropic_residual/sources", &choices)?;
-    recorder.dispatch(&stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]), dims);
-    run.finish(recorder)?;
+    for layers in Bands::new(dims[2], dims[2]) {
+        let params = SourceParams { first: layers.start as u32, ..params };
+        let bound = stage.bind(gpu, &params, &inputs, &[Bind::Texture(&field)]);
+        let mut recorder = gpu.recorder("sources");
+        recorder.dispatch(&bound, [dims[0], dims[1], layers.len()]);
+        run.finish(recorder)?;
+    }
     let field = super::radial::add(run, medium, beams, channels, problem, field)?;
     with_sums(run, problem, &level, field)
 }

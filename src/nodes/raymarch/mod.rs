@@ -7,6 +7,7 @@
 use glam::DMat3;
 
 use self::backdrop::Backdrop;
+use super::bands::Bands;
 use super::{ELSEWHERE, NodeKind, Rules, Run, beams_through, check_media, no_files};
 use crate::camera::Camera;
 use crate::geometry::Mesh;
@@ -106,7 +107,7 @@ mirror! {
     }
 }
 
-/// Rays that are marched at once, about: a cancel is heard between them.
+/// Rays that are marched at once at the most, about.
 const BAND_RAYS: usize = 1 << 18;
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
@@ -176,9 +177,9 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let band = (BAND_RAYS / row_rays).clamp(1, camera.height);
     let pixels = gpu.buffer("a band of pixels", (row_bytes * band) as u64, "lower camera.width")?;
     let mut picture = layers::Growing::new(camera.width, camera.height);
-    for row in (0..camera.height).step_by(band) {
-        let n_rows = band.min(camera.height - row);
-        let params = MarchParams { row: row as u32, n_rows: n_rows as u32, ..params };
+    for rows in Bands::new(camera.height, band) {
+        let n_rows = rows.len();
+        let params = MarchParams { row: rows.start as u32, n_rows: n_rows as u32, ..params };
         let mut recorder = gpu.recorder("raymarch");
         let bound = stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&pixels)]);
         recorder.dispatch(&bound, [camera.width, n_rows, 1]);
