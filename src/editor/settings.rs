@@ -61,7 +61,8 @@ impl Default for Settings {
             theme: ThemeChoice::Dark,
             scale: 1.0,
             recent: Vec::new(),
-            inspector_width: 324.0,
+            // The longest unit stands in whole beside a number of five digits.
+            inspector_width: 344.0,
             canvas_height: None,
             folder: None,
             fps: 24.0,

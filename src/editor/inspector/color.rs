@@ -6,7 +6,7 @@
 use egui::{Ui, color_picker::color_edit_button_rgb};
 
 use super::number::{entry, named, text_of};
-use super::row::component;
+use super::row::{LETTER, column, component};
 use super::slot::Slot;
 
 /// A swatch that opens a picker, the strength, and the three numbers.
@@ -35,7 +35,7 @@ pub fn show(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
         message = message.take().or(typed);
     });
     ui.horizontal(|ui| {
-        let width = ui.available_width() / 3.0 - 28.0;
+        let width = column(ui, 3) - LETTER;
         for (part, label) in ["r", "g", "b"].into_iter().enumerate() {
             let changed = component(ui, slot, part, label, width);
             message = message.take().or(changed);

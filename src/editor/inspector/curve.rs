@@ -12,6 +12,7 @@ use serde_json::Value as Json;
 
 use super::expression::evaluate;
 use super::number::{entry, named, text_of};
+use super::row::{LETTER, column};
 use super::slot::{Slot, numbers};
 use crate::image::colormap::{self, Colormap};
 use crate::image::tonemap::srgb_encode;
@@ -89,40 +90,51 @@ fn moved(slot: &mut Slot, rows: &Rows, idx: usize, area: &Area, response: &Respo
 /// The numbers of the chosen point.
 fn point(ui: &mut Ui, slot: &mut Slot, rows: &Rows, columns: &[&str], chosen: usize) -> Option<String> {
     let mut message = None;
-    let cell = vec2((ui.available_width() - 16.0) / 3.0, ui.spacing().interact_size.y);
-    ui.horizontal_wrapped(|ui| {
-        for (part, column) in columns.iter().enumerate() {
-            let row = &rows[chosen];
-            let (id, name) = (slot.id().with(("number", chosen, part)), format!("{}.{column}", slot.name()));
-            // A name and its number wrap together.
-            let typed = ui.allocate_ui_with_layout(cell, Layout::left_to_right(Align::Center), |ui| {
-                ui.set_min_size(cell);
-                let label = ui.weak(*column).rect.width();
-                let width = cell.x - label.max(44.0) - 8.0;
-                ui.add_space(44.0 - label.min(44.0));
-                entry(ui, id, &name, &text_of(row[part]), width, |text| {
-                    let mut rows = rows.clone();
-                    rows[chosen][part] = evaluate(text)?;
-                    slot.set(json(&rows), None)
-                })
-            });
-            message = message.take().or(typed.inner);
-        }
-        if let Some(rgb) = rgb_of(columns) {
-            let row = &rows[chosen];
-            let mut picked = [row[rgb], row[rgb + 1], row[rgb + 2]].map(|x| x as f32);
-            let response = egui::color_picker::color_edit_button_rgb(ui, &mut picked);
-            named(&response, &format!("{} picker", slot.name()));
-            if response.changed() {
-                let mut rows = rows.clone();
-                for (n, x) in picked.into_iter().enumerate() {
-                    rows[chosen][rgb + n] = f64::from((x * 1e4).round()) / 1e4;
-                }
-                message = slot.set(json(&rows), Some(slot.id().with("picker"))).err();
+    let rgb = rgb_of(columns);
+    let is_color = |part: usize| rgb.is_some_and(|rgb| (rgb..rgb + 3).contains(&part));
+    // The components of the color in a line of their own, as other colors have them.
+    for colors in [false, true] {
+        ui.horizontal(|ui| {
+            let cell = vec2(column(ui, 3), ui.spacing().interact_size.y);
+            let name_width = if colors { LETTER } else { 52.0 };
+            for (part, name) in columns.iter().enumerate().filter(|(part, _)| is_color(*part) == colors) {
+                let (id, label) =
+                    (slot.id().with(("number", chosen, part)), format!("{}.{name}", slot.name()));
+                let typed = ui.allocate_ui_with_layout(cell, Layout::left_to_right(Align::Center), |ui| {
+                    ui.set_min_size(cell);
+                    ui.spacing_mut().item_spacing.x = 0.0;
+                    let taken = ui.weak(*name).rect.width();
+                    ui.add_space((name_width - taken).max(4.0));
+                    entry(ui, id, &label, &text_of(rows[chosen][part]), ui.available_width(), |text| {
+                        let mut rows = rows.clone();
+                        rows[chosen][part] = evaluate(text)?;
+                        slot.set(json(&rows), None)
+                    })
+                });
+                message = message.take().or(typed.inner);
             }
-        }
-    });
+            if let Some(rgb) = rgb.filter(|_| !colors) {
+                message = message.take().or(swatch(ui, slot, rows, rgb, chosen));
+            }
+        });
+    }
     message
+}
+
+/// The chosen point's color, which opens a picker.
+fn swatch(ui: &mut Ui, slot: &mut Slot, rows: &Rows, rgb: usize, chosen: usize) -> Option<String> {
+    let row = &rows[chosen];
+    let mut picked = [row[rgb], row[rgb + 1], row[rgb + 2]].map(|x| x as f32);
+    let response = egui::color_picker::color_edit_button_rgb(ui, &mut picked);
+    named(&response, &format!("{} picker", slot.name()));
+    if !response.changed() {
+        return None;
+    }
+    let mut rows = rows.clone();
+    for (n, x) in picked.into_iter().enumerate() {
+        rows[chosen][rgb + n] = f64::from((x * 1e4).round()) / 1e4;
+    }
+    slot.set(json(&rows), Some(slot.id().with("picker"))).err()
 }
 
 /// Colors from a map over the same span, the last column as it is.

@@ -6,7 +6,7 @@
 use egui::{Sense, Stroke, Ui, vec2};
 
 use super::number::named;
-use super::row::component;
+use super::row::{LETTER, column, component};
 use super::slot::Slot;
 
 const SIZE: f32 = 72.0;
@@ -23,7 +23,7 @@ pub fn show(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
         ui.vertical(|ui| {
             for (part, label) in ["x", "y", "z"].into_iter().enumerate() {
                 ui.horizontal(|ui| {
-                    let width = ui.available_width() - 28.0;
+                    let width = column(ui, 1) - LETTER;
                     let changed = component(ui, slot, part, label, width);
                     message = message.take().or(changed);
                 });

@@ -74,13 +74,16 @@ fn row(
     if let Some(reason) = refused.inner {
         ui.colored_label(ui.visuals().error_fg_color, reason);
     }
-    ui.horizontal_wrapped(|ui| {
-        ui.add_space(12.0);
-        let kind = kind.map_or("unknown".to_owned(), |spec| spec.kind.to_string());
-        ui.weak(format!("{kind}, stands for"));
-        for end in ends {
-            asked = link(ui, path, end).or(asked.take());
-        }
+    // Lines after the first begin where it does.
+    ui.horizontal(|ui| {
+        ui.add_space(4.0);
+        ui.horizontal_wrapped(|ui| {
+            let kind = kind.map_or("unknown".to_owned(), |spec| spec.kind.to_string());
+            ui.weak(format!("{kind}, stands for"));
+            for end in ends {
+                asked = link(ui, path, end).or(asked.take());
+            }
+        });
     });
     if let Some(change) = change {
         apply(project, path, side, port, &change);

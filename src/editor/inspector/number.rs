@@ -102,11 +102,30 @@ fn select_all(ui: &Ui, id: egui::Id, text: &str) {
 
 /// One number of a parameter as a field that takes arithmetic.
 pub fn field(ui: &mut Ui, slot: &mut Slot, part: usize, suffix: &str, width: f32) -> Option<String> {
-    let current = text_of(slot.numbers()[part]);
-    let name = slot.name() + suffix;
-    entry(ui, slot.id().with(("field", part)), &name, &current, width, |text| {
+    let x = slot.numbers()[part];
+    let (current, shown) = (text_of(x), rounded_to_fit(x, |text| has_room(ui, text, width)));
+    let (id, name) = (slot.id().with(("field", part)), slot.name() + suffix);
+    entry_shown(ui, id, &name, &current, Some(&shown), width, |text| {
         slot.set_number(part, evaluate(text)?, None)
     })
+}
+
+/// Whether a text is seen in whole in a field of this width.
+pub fn has_room(ui: &Ui, text: &str, width: f32) -> bool {
+    let font = egui::TextStyle::Body.resolve(ui.style());
+    // The margins of a field are 4 points each.
+    let galley = ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER);
+    galley.size().x + 8.0 <= width
+}
+
+/// A number with as many digits as fit, three at least: cut, its end would be lost, and with it its power of ten.
+fn rounded_to_fit(x: f64, fits: impl Fn(&str) -> bool) -> String {
+    let whole = text_of(x);
+    if fits(&whole) {
+        return whole;
+    }
+    let with_digits = |digits: usize| format!("{x:.*e}", digits - 1).parse().map_or(whole.clone(), text_of);
+    (4..=15).rev().map(with_digits).find(|text| fits(text)).unwrap_or_else(|| with_digits(3))
 }
 
 /// A number as people write it.
@@ -199,7 +218,17 @@ pub fn help(slot: &Slot) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::rounded;
+    use super::{rounded, rounded_to_fit};
+
+    #[test]
+    fn long_numbers_are_rounded_to_their_field() {
+        let shown = |x: f64, most: usize| rounded_to_fit(x, |text| text.len() <= most);
+        assert_eq!(shown(std::f64::consts::TAU, 9), "6.2831853");
+        assert_eq!(shown(std::f64::consts::TAU, 2), "6.28");
+        assert_eq!(shown(0.1, 9), "0.1");
+        assert_eq!(shown(-1.0 / 3e12, 10), "-3.333e-13");
+        assert_eq!(shown(2_100_000.0, 9), "2100000");
+    }
 
     #[test]
     fn dragged_numbers_are_short() {

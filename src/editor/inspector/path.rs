@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex};
 use egui::Ui;
 use egui_file_dialog::{DialogState, FileDialog};
 
-use super::number::{entry_shown, named};
+use super::number::{entry_shown, has_room, named};
 use super::slot::Slot;
 use crate::graph::ParamKind;
 use crate::graph::spec::Default;
@@ -30,11 +30,7 @@ pub fn show(ui: &mut Ui, slot: &mut Slot, width: f32) -> Option<String> {
     let (id, name) = (slot.id().with("path"), slot.name());
     let is_nullable = slot.spec.default == Default::Null;
     let width = width - 30.0;
-    let shown = end_of(&current, |text| {
-        let font = egui::TextStyle::Body.resolve(ui.style());
-        // The margins of a field are 4 points each.
-        ui.painter().layout_no_wrap(text.to_owned(), font, egui::Color32::PLACEHOLDER).size().x + 8.0 <= width
-    });
+    let shown = end_of(&current, |text| has_room(ui, text, width));
     let typed = entry_shown(ui, id, &name, &current, Some(&shown), width, |text| {
         match text.is_empty() && is_nullable {
             true => slot.set(serde_json::Value::Null, None),

@@ -15,6 +15,8 @@ use crate::graph::spec::Default;
 const LABEL: f32 = 112.0;
 /// Of a button with a sign.
 const BUTTON: f32 = 20.0;
+/// Of a letter before a number, with the gap behind it.
+pub const LETTER: f32 = 16.0;
 /// Between controls of a line (`theme.rs`).
 const GAP: f32 = 8.0;
 
@@ -36,6 +38,7 @@ fn row(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
         let is_on = ui.horizontal(|ui| {
             label(ui, slot);
             let is_on = switch(ui, slot);
+            space_before_tail(ui, slot);
             tail(ui, slot);
             is_on
         });
@@ -74,7 +77,7 @@ fn row(ui: &mut Ui, slot: &mut Slot) -> Option<String> {
         | ParamKind::Record(_) => {
             ui.horizontal(|ui| {
                 label(ui, slot);
-                ui.add_space((ui.available_width() - tail_width(ui, slot)).max(0.0));
+                space_before_tail(ui, slot);
                 tail(ui, slot);
             });
             below(ui, slot)
@@ -144,9 +147,7 @@ fn vector(ui: &mut Ui, slot: &mut Slot, count: usize) -> Option<String> {
     let mut message = None;
     for line in 0..count.div_ceil(columns) {
         ui.horizontal(|ui| {
-            // As far to the right as sliders go.
-            let gaps = ui.spacing().item_spacing.x * columns as f32;
-            let width = (ui.available_width() - gaps) / columns as f32;
+            let width = column(ui, columns);
             for part in line * columns..count.min((line + 1) * columns) {
                 let axis = ["x", "y", "z"].get(part).filter(|_| count == 3);
                 let label = axis.map_or_else(|| part.to_string(), |axis| (*axis).to_owned());
@@ -154,7 +155,7 @@ fn vector(ui: &mut Ui, slot: &mut Slot, count: usize) -> Option<String> {
                 let taken = if count <= 4 {
                     let dragged = handle(ui, slot, part, &label, &suffix);
                     message = message.take().or(dragged);
-                    16.0
+                    LETTER
                 } else {
                     0.0
                 };
@@ -164,6 +165,11 @@ fn vector(ui: &mut Ui, slot: &mut Slot, count: usize) -> Option<String> {
         });
     }
     message
+}
+
+/// Of each of so many columns, as far to the right as sliders go.
+pub fn column(ui: &Ui, count: usize) -> f32 {
+    (ui.available_width() - ui.spacing().item_spacing.x * count as f32) / count as f32
 }
 
 /// The name, with the doc as its tooltip; the dragged kind of it is `number::handle`.
@@ -256,7 +262,11 @@ fn tail(ui: &mut Ui, slot: &mut Slot) {
         let room = ui.available_width() - after;
         let size = vec2(unit_width(ui, slot).min(room).max(0.0), ui.spacing().interact_size.y);
         let unit = egui::Label::new(RichText::new(slot.spec.unit).weak()).truncate();
-        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| ui.add(unit));
+        ui.allocate_ui_with_layout(size, egui::Layout::left_to_right(egui::Align::Center), |ui| {
+            // Also where the text is a little narrower, so that what follows stands in one column.
+            ui.set_min_size(size);
+            ui.add(unit)
+        });
     }
     if slot.spec.kind.takes_keys() {
         key(ui, slot);
@@ -317,6 +327,11 @@ fn tail_width(ui: &Ui, slot: &Slot) -> f32 {
     let key = if slot.spec.kind.takes_keys() { BUTTON + GAP } else { 0.0 };
     let mixed = if slot.is_mixed() { 32.0 + GAP } else { 0.0 };
     mixed + unit + key + BUTTON + GAP
+}
+
+/// Nothing that has a gap behind it stands there, so that the first gap of the tail is not taken.
+fn space_before_tail(ui: &mut Ui, slot: &Slot) {
+    ui.add_space((ui.available_width() - tail_width(ui, slot) + GAP).max(0.0));
 }
 
 fn width_before_tail(ui: &Ui, slot: &Slot) -> f32 {

@@ -1,5 +1,7 @@
 //! Gestures on each kind of parameter, found by their names.
 
+mod files;
+mod looks;
 mod wires;
 
 use std::sync::Arc;
@@ -437,19 +439,6 @@ fn what_a_node_said_of_its_run_is_shown() {
 }
 
 #[test]
-fn files_are_picked_in_a_dialog() {
-    let mut harness = on(json!({ "type": "load_vdb", "path": "../data/plume.vdb" }));
-    assert!(!says(&harness, "Choose n.path"));
-    node(&harness, "n.path pick").click();
-    // The dialog reads its folder on a thread and asks for frames meanwhile.
-    harness.run_steps(4);
-    assert!(says(&harness, "Choose n.path"));
-    harness.key_press(Key::Escape);
-    harness.run_steps(4);
-    assert!(!says(&harness, "Choose n.path"));
-}
-
-#[test]
 fn a_graph_is_described_where_no_node_is_selected() {
     let mut harness = inspector(json!({ "sun": { "type": "sun" } }), json!([]), &[]);
     node(&harness, "about the graph").focus();
@@ -462,33 +451,4 @@ fn a_graph_is_described_where_no_node_is_selected() {
     // All that was written is one step.
     harness.state_mut().undo();
     assert_eq!(harness.state().project.document().about, "");
-}
-
-/// For looking: `cargo test inspector::tests::pictures -- --ignored` writes PNG files to `out/`.
-#[test]
-#[ignore = "draws pictures for people to look at"]
-fn pictures() {
-    let out = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("out");
-    std::fs::create_dir_all(&out).unwrap();
-    let points = json!([[0, 0.1, 0, 0.3, 0], [0.3, 0.9, 0.2, 0.2, 0.2], [1, 1, 0.9, 0.6, 1]]);
-    let nodes = json!({
-        "cloud": { "type": "load_vdb", "path": "../data/plume.vdb" },
-        "medium": { "type": "medium", "g": { "keys": [[12, 0.5], [20, 0.7]] }, "density_scale": 12, "emission": {} },
-        "sun": { "type": "sun", "direction": [0.3, -0.4, 0.86], "irradiance": [20, 18, 15] },
-        "look": { "type": "transfer_function", "points": points },
-        "camera": { "type": "camera" }
-    });
-    for name in ["medium", "sun", "look", "camera", "cloud"] {
-        for theme in [egui::Theme::Light, egui::Theme::Dark] {
-            let mut harness = inspector(nodes.clone(), json!(["cloud.volume -> medium.volume"]), &[name]);
-            harness.ctx.set_theme(theme);
-            harness.set_size(vec2(320.0, 860.0));
-            harness.run();
-            if name == "medium" {
-                type_into(&mut harness, "medium.density_scale", "-1");
-            }
-            let picture = harness.render().unwrap();
-            picture.save(out.join(format!("inspector_{name}_{theme:?}.png"))).unwrap();
-        }
-    }
 }
