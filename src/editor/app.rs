@@ -260,7 +260,12 @@ impl App {
         if self.spanned != Some(self.project.revision()) {
             self.spanned = Some(self.project.revision());
             let flat = self.flat();
-            self.player.set_span(super::player::span(&flat));
+            let changed = self.asked.as_ref().map(|asked| look::changed(&asked.document, &flat));
+            let as_it_was = |node: &str| {
+                changed.as_ref().is_some_and(|changed| !changed.contains(node))
+                    && flat.nodes.contains_key(node)
+            };
+            self.player.set_span(super::player::span(&flat), as_it_was);
         }
         self.player.advance(ui.input(|input| input.time), self.settings.fps);
         if self.player.is_playing() {

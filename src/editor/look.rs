@@ -8,9 +8,9 @@ use std::collections::HashSet;
 
 use super::viewport::Tone;
 use crate::camera::Camera;
-use crate::graph::{Document, End, Moment, NodeSpec, ParamKind, Params, PortType};
+use crate::graph::{Document, End, FileState, Moment, NodeSpec, ParamKind, Params, PortType};
 use crate::image::tonemap::Curve;
-use crate::nodes::catalog;
+use crate::nodes::{self, catalog};
 
 /// A picture, and the nodes around it.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,6 +92,19 @@ pub fn above<'a>(document: &'a Document, name: &'a str) -> Vec<&'a str> {
         }
     }
     found
+}
+
+/// The files that a node and all above it read in a frame, as they are now.
+pub fn files_above(document: &Document, name: &str, frame: i64) -> Vec<FileState> {
+    let moment = Moment { frame: Some(frame), is_aside: false };
+    let files = |name: &str| {
+        let node = document.nodes.get(name)?;
+        let kind = nodes::kind(&node.type_id)?;
+        let params = Params::resolve(kind.spec.params, &node.params, &document.base, moment).ok()?;
+        (kind.files)(&params).ok()
+    };
+    let files = above(document, name).into_iter().filter_map(files).flatten();
+    files.map(|path| FileState::of(&path)).collect()
 }
 
 /// How the picture of a tone_map is shown; without one, or with parameters that it would refuse, `other`.

@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde_json::Value as Json;
 
-use crate::graph::Document;
+use crate::graph::{Document, FileState};
 use crate::volume::sequence::Sequence;
 
 /// First and last frame of a flat document, and those in between that have no file; `None` where nothing changes
@@ -56,6 +56,32 @@ fn key_frames(json: &Json) -> Vec<i64> {
     }
 }
 
+/// Why a frame has no picture.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Broken {
+    /// A line.
+    pub why: String,
+    /// The node that said so, and the files that it and all that it reads were made of; `None` where there is no file.
+    told: Option<(String, Vec<FileState>)>,
+}
+
+impl Broken {
+    /// A sequence has no such frame.
+    pub fn missing() -> Self {
+        Self { why: "there is no file of this frame".to_owned(), told: None }
+    }
+
+    /// A node failed that reads these files.
+    pub fn told(node: &str, message: &str, files: Vec<FileState>) -> Self {
+        Self { why: format!("{node}: {message}"), told: Some((node.to_owned(), files)) }
+    }
+
+    /// Whether it may be otherwise by now.
+    fn is_out_of_date(&self) -> bool {
+        self.told.as_ref().is_some_and(|(_, files)| !files.iter().all(FileState::holds))
+    }
+}
+
 /// The frame that is looked at.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Player {
@@ -70,7 +96,7 @@ pub struct Player {
     /// Frames whose whole picture is kept.
     pub cached: BTreeSet<i64>,
     /// Frames that have no picture, and why.
-    pub broken: BTreeMap<i64, String>,
+    pub broken: BTreeMap<i64, Broken>,
     /// First and last frame of the document; `None` where nothing changes with the frame.
     span: Option<[i64; 2]>,
     /// When and at which frame it began to play.
@@ -79,8 +105,8 @@ pub struct Player {
 
 impl Player {
     /// At the first frame of a document; a frame that is inside of its span stays, and so does a range that was
-    /// chosen.
-    pub fn set_span(&mut self, found: Option<([i64; 2], BTreeSet<i64>)>) {
+    /// chosen. A frame that was broken is looked at again where the node that said so is not `as_it_was`.
+    pub fn set_span(&mut self, found: Option<([i64; 2], BTreeSet<i64>)>, as_it_was: impl Fn(&str) -> bool) {
         let (span, missing) = found.unzip();
         if self.span != span {
             if self.span.is_none() {
@@ -94,8 +120,16 @@ impl Player {
         self.frame = self.frame.clamp(self.range[0], self.range[1]);
         // What an edit changed is not the picture that is kept.
         self.cached.clear();
-        let missing = missing.unwrap_or_default().into_iter();
-        self.broken = missing.map(|frame| (frame, "there is no file of this frame".to_owned())).collect();
+        self.broken.retain(|_, broken| broken.told.as_ref().is_some_and(|(node, _)| as_it_was(node)));
+        self.broken.extend(missing.unwrap_or_default().into_iter().map(|frame| (frame, Broken::missing())));
+    }
+
+    /// Whether a frame is passed over. One whose files are others by now is not.
+    pub fn passes_over(&mut self, frame: i64) -> bool {
+        if self.broken.get(&frame).is_some_and(Broken::is_out_of_date) {
+            self.broken.remove(&frame);
+        }
+        self.broken.contains_key(&frame)
     }
 
     /// Whether something changes with the frame.
@@ -176,24 +210,45 @@ mod tests {
     fn a_chosen_range_outlives_edits() {
         let mut player = Player::default();
         assert!(!player.has_frames());
-        player.set_span(Some(([1, 10], [4].into())));
+        player.set_span(Some(([1, 10], [4].into())), |_| true);
         assert_eq!((player.frame, player.range, player.loops), (1, [1, 10], true));
         assert_eq!(player.broken.keys().copied().collect::<Vec<_>>(), [4]);
         (player.range, player.frame, player.loops) = ([1, 48], 40, false);
         player.cached.insert(40);
-        player.broken.insert(40, "damaged".to_owned());
-        player.set_span(Some(([1, 10], [].into())));
+        player.broken.insert(40, Broken::told("medium", "damaged", Vec::new()));
+        player.set_span(Some(([1, 10], [].into())), |node| node != "medium");
         assert_eq!((player.frame, player.range, player.loops), (40, [1, 48], false));
         assert!(player.cached.is_empty() && player.broken.is_empty());
         // A key at 40.
-        player.set_span(Some(([1, 40], [].into())));
+        player.set_span(Some(([1, 40], [].into())), |_| true);
         assert_eq!(player.range, [1, 48]);
         // Nobody chose: the range goes with the document.
         player.range = [1, 40];
-        player.set_span(Some(([1, 20], [].into())));
+        player.set_span(Some(([1, 20], [].into())), |_| true);
         assert_eq!((player.frame, player.range), (20, [1, 20]));
-        player.set_span(None);
+        player.set_span(None, |_| true);
         assert!(!player.has_frames());
+    }
+
+    #[test]
+    fn what_is_broken_stays_so_until_it_may_be_otherwise() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("a_0002.vdb");
+        std::fs::write(&file, "damaged").unwrap();
+        let mut player = Player::default();
+        let span = || Some(([1, 4], [3].into()));
+        player.set_span(span(), |_| true);
+        player.broken.insert(2, Broken::told("medium", "no grid", vec![FileState::of(&file)]));
+        let broken = |player: &Player| player.broken.keys().copied().collect::<Vec<_>>();
+        // An edit elsewhere.
+        player.set_span(span(), |node| node != "march");
+        assert_eq!(broken(&player), [2, 3]);
+        assert!(player.passes_over(2) && player.passes_over(3) && !player.passes_over(4));
+        std::fs::write(&file, "mended now").unwrap();
+        assert!(!player.passes_over(2));
+        player.broken.insert(2, Broken::told("medium", "no grid", vec![FileState::of(&file)]));
+        player.set_span(span(), |node| node != "medium");
+        assert_eq!(broken(&player), [3]);
     }
 
     #[test]

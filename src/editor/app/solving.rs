@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::{App, PicturesSeen};
 use crate::editor::NodeState;
 use crate::editor::look::{self, Look};
-use crate::editor::player::LOADER;
+use crate::editor::player::{Broken, LOADER};
 use crate::editor::viewport::{self, Picture, SLICE, Tone};
 use crate::editor::worker::{Ask, Reply, Solved};
 use crate::gpu::OUT_OF_MEMORY;
@@ -23,8 +23,10 @@ pub struct Asked {
     look: Option<Look>,
     slice: Option<(Node, Wire)>,
     number: u64,
+    /// The first request of this revision: what came of an earlier one says nothing of its frames.
+    first: u64,
     /// What was asked, flat.
-    document: Document,
+    pub(super) document: Document,
 }
 
 #[cfg(test)]
@@ -52,7 +54,7 @@ impl App {
         let is_down = context.input(|input| input.pointer.any_down());
         let is_drag = is_down || self.viewport.is_moving(now) || self.player.is_playing();
         let frame = self.asks_frame();
-        if frame.is_some_and(|frame| self.player.broken.contains_key(&frame)) {
+        if frame.is_some_and(|frame| self.player.passes_over(frame)) {
             return;
         }
         let revision = self.project.revision();
@@ -100,7 +102,9 @@ impl App {
         let ask = Ask { document: with_slice, looked_at, rest, beside, wanted, frames, is_drag, is_restart };
         let number = self.worker.ask(ask);
         self.viewport.slice.asked(number);
-        self.asked = Some(Asked { revision, frame, is_drag, look, slice, number, document });
+        let of_revision = self.asked.as_ref().filter(|asked| asked.revision == revision);
+        let first = of_revision.map_or(number, |asked| asked.first);
+        self.asked = Some(Asked { revision, frame, is_drag, look, slice, number, first, document });
     }
 
     /// Opens the device anew, and looks again at frames that were broken.
@@ -117,7 +121,10 @@ impl App {
                     self.figures.adapter = Some(adapter);
                     self.figures.trouble = None;
                 }
-                Reply::Event { event, is_full, frame } => self.note(event, is_full && is_last, frame),
+                Reply::Event { event, is_full, frame } => {
+                    let is_of_revision = self.asked.as_ref().is_some_and(|asked| number >= asked.first);
+                    self.note(event, is_full && is_last, frame.filter(|_| is_of_revision));
+                }
                 Reply::Solved(solved) => self.take(context, solved, number),
                 Reply::Kept { loaded, cached } if is_last => {
                     (self.player.loaded, self.player.cached) = (loaded, cached);
@@ -168,8 +175,8 @@ impl App {
                 }
                 self.small_picture(context, &name, value.get());
                 self.pictures.insert(name, Picture { value, level });
-            } else if value.kind == PortType::Medium && level.is_full() {
-                // Its lattice alone: the medium's fields are the cache's to keep or drop.
+            } else if value.kind == PortType::Medium && (level.is_full() || self.lattice.is_none()) {
+                // A coarse one fills the same box, but for a cell. Its lattice alone: the medium's fields are the cache's to keep or drop.
                 self.lattice = Some(value.get::<Medium>().lattice.clone());
             }
         }
@@ -268,7 +275,8 @@ impl App {
                     .as_ref()
                     .is_some_and(|look| look::above(document, &look.source.node).contains(&name.as_str()));
                 if reads_file && is_seen {
-                    self.player.broken.insert(frame, format!("{name}: {message}"));
+                    let files = look::files_above(document, name, frame);
+                    self.player.broken.insert(frame, Broken::told(name, message, files));
                 }
             }
             _ => {}
@@ -277,8 +285,8 @@ impl App {
 
     /// Why there is no picture of the document as it is: the frame or node that failed, and its message.
     pub(super) fn problem(&self) -> Option<(String, String)> {
-        if let Some(why) = self.player.broken.get(&self.player.frame).filter(|_| self.has_frames()) {
-            return Some((format!("Frame {}", self.player.frame), why.clone()));
+        if let Some(broken) = self.player.broken.get(&self.player.frame).filter(|_| self.has_frames()) {
+            return Some((format!("Frame {}", self.player.frame), broken.why.clone()));
         }
         let source = &self.look.as_ref()?.source.node;
         let name = match &self.statuses.get(source)?.state {

@@ -314,7 +314,7 @@ fn frames_of_files_in_groups_are_on_the_timeline() {
 
 #[test]
 fn a_broken_frame_is_told_marked_and_passed_over() {
-    let (_folder, mut harness) = sequence();
+    let (folder, mut harness) = sequence();
     // Of a request for the second frame, while the first is looked at; the file is damaged where the medium
     // decodes its grid.
     harness.state_mut().note(failed("medium", "the grid ends in its middle"), false, Some(2));
@@ -338,7 +338,28 @@ fn a_broken_frame_is_told_marked_and_passed_over() {
     harness.run_steps(3);
     assert_eq!(asked(&harness), Some(3));
     assert!(harness.query_by_label("Frame 2 failed").is_none());
-    // An edit may mend it, and so may the file: it is tried again.
+    // An edit that has nothing to do with it leaves the mark, one of what failed takes it away.
+    let edit = |harness: &mut Harness<App>, node: &str, param: &str| {
+        let (node, param) = (node.to_owned(), param.to_owned());
+        harness.state_mut().project.edit("change", move |document| {
+            document.nodes.get_mut(&node).unwrap().params.insert(param, 2.into());
+        });
+        harness.run_steps(3);
+    };
+    edit(&mut harness, "march", "step");
+    assert_eq!(broken(&harness), [2]);
+    edit(&mut harness, "medium", "density_scale");
+    assert_eq!(broken(&harness), [] as [i64; 0]);
+    // Nor does it stay when the file is another.
+    harness.state_mut().note(failed("medium", "the grid ends in its middle"), false, Some(2));
+    harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::ArrowLeft);
+    harness.run_steps(3);
+    assert!(asked(&harness) == Some(3) && broken(&harness) == [2]);
+    std::fs::write(folder.path().join("steam_2.vdb"), "mended").unwrap();
+    harness.run_steps(2);
+    assert!(asked(&harness) == Some(2) && broken(&harness) == [] as [i64; 0]);
+    // It is tried again where that is asked for.
+    harness.state_mut().note(failed("medium", "the grid ends in its middle"), false, Some(2));
     let context = harness.ctx.clone();
     harness.state_mut().perform(&context, Action::Retry);
     harness.run_steps(2);

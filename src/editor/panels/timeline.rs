@@ -101,7 +101,7 @@ fn strip(ui: &mut Ui, player: &mut Player) {
 /// What is known of a frame.
 fn about(player: &Player, frame: i64) -> String {
     match (player.broken.get(&frame), player.loaded.contains(&frame), player.cached.contains(&frame)) {
-        (Some(why), ..) => format!("passed over, {why}"),
+        (Some(broken), ..) => format!("passed over, {}", broken.why),
         (None, true, true) => "loaded, and its picture is kept".to_owned(),
         (None, false, true) => "its picture is kept".to_owned(),
         (None, true, false) => "loaded, its picture is not computed yet".to_owned(),
@@ -143,7 +143,7 @@ mod tests {
 
     fn window() -> Harness<'static, Bench> {
         let mut player = Player::default();
-        player.set_span(Some(([1, 20], BTreeSet::from([7]))));
+        player.set_span(Some(([1, 20], BTreeSet::from([7]))), |_| true);
         (player.loaded, player.cached) = ([2, 3].into(), [3].into());
         let draw = |ui: &mut Ui, (player, fps): &mut Bench| {
             player.advance(ui.input(|input| input.time), *fps);
@@ -231,6 +231,20 @@ mod tests {
         harness.get_by_label("Play").click();
         harness.run_steps(90);
         assert!(frame(&harness) == last && !harness.state().0.is_playing());
+    }
+
+    #[test]
+    fn the_rate_is_dragged() {
+        let mut harness = window();
+        let at = harness.get_by_label("Frames a second").rect().center();
+        press(&mut harness, at, true);
+        for n in 0..=5 {
+            harness.hover_at(at + vec2(12.0 * n as f32, 0.0));
+            harness.step();
+        }
+        press(&mut harness, at + vec2(60.0, 0.0), false);
+        let fps = harness.state().1;
+        assert!((26.0..31.0).contains(&fps), "{fps}");
     }
 
     #[test]
