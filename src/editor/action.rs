@@ -45,6 +45,8 @@ pub enum Action {
     StoreA,
     /// Keeps another one.
     StoreB,
+    /// Asks for a graph that becomes a group of this one.
+    Insert,
     /// Plays the sequence, or stops.
     Play,
     /// The frame after this one.
@@ -149,6 +151,7 @@ pub const ACTIONS: &[ActionSpec] = &[
     canvas(Command::Ungroup, "Node", "Ungroup", key(COMMAND_SHIFT, Key::G)),
     canvas(Command::OpenGroup, "Node", "Open the group", key(COMMAND, Key::ArrowDown)),
     canvas(Command::LeaveGroup, "Node", "Leave the group", key(COMMAND, Key::ArrowUp)),
+    spec(Action::Insert, "Node", "Insert a graph as a group…", None),
     canvas(Command::AddFrame, "Node", "Frame with a comment", key(COMMAND_SHIFT, Key::F)).apart(),
     canvas(Command::Arrange, "Node", "Arrange nodes", key(NONE, Key::L)),
     spec(Action::Palette, "View", "Command palette", key(COMMAND_SHIFT, Key::P)),

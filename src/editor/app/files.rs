@@ -8,12 +8,15 @@ use egui_file_dialog::{DialogState, FileDialog, Filter};
 use super::App;
 use crate::editor::panels::unsaved::{self, Answer};
 use crate::editor::{Project, Selection, Statuses};
+use crate::graph::Document;
 use crate::template;
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Purpose {
     Graph,
+    /// A graph becomes a group of the one that is open.
+    Insert,
     Volume,
     Save,
     /// A group is written to a file of its own.
@@ -43,7 +46,7 @@ pub struct Files {
     after_save: Option<Goal>,
     may_close: bool,
     /// The group that is to be written as a preset.
-    preset: Option<crate::graph::Document>,
+    preset: Option<Document>,
     /// The title that the window has.
     title: String,
 }
@@ -72,14 +75,18 @@ impl Files {
         self.may_close = true;
     }
 
-    /// Asks for a graph.
-    pub fn ask_graph(&mut self, folder: Option<&Path>) {
+    /// Asks for a graph, to open or to insert.
+    pub fn ask_graph(&mut self, folder: Option<&Path>, inserts: bool) {
         let is_graph = |path: &Path| path.extension().is_some_and(|ending| ending == "json");
-        let mut dialog = dialog("Open a graph", folder)
+        let (title, purpose) = match inserts {
+            true => ("Insert a graph as a group", Purpose::Insert),
+            false => ("Open a graph", Purpose::Graph),
+        };
+        let mut dialog = dialog(title, folder)
             .add_file_filter("Graphs", Filter::new(is_graph))
             .default_file_filter("Graphs");
         dialog.pick_file();
-        self.dialog = Some((dialog, Purpose::Graph));
+        self.dialog = Some((dialog, purpose));
     }
 
     /// Asks for a volume.
@@ -94,7 +101,6 @@ impl Files {
 
     /// Asks where to save.
     pub fn ask_save(&mut self, folder: Option<&Path>, project: &Project) {
-        let folder = project.file().and_then(Path::parent).or(folder);
         let name = project.file().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
         let mut dialog =
             dialog("Save the graph", folder).default_file_name(&name.unwrap_or("graph.json".to_owned()));
@@ -134,6 +140,13 @@ impl App {
             Goal::Open(path) => self.open_now(&path),
             Goal::Preset(idx) => self.open_preset_now(idx),
         }
+    }
+
+    /// Where files are looked for first: at the graph that is open, else where the last one was.
+    pub(super) fn folder(&self) -> Option<PathBuf> {
+        let file = self.project.file().filter(|_| self.is_open);
+        let of_file = file.and_then(|file| std::path::absolute(file).ok()?.parent().map(Path::to_owned));
+        of_file.or_else(|| self.settings.folder.clone())
     }
 
     /// Opens a graph, or a graph for a volume.
@@ -202,12 +215,24 @@ impl App {
     /// Asks where to write a group as a graph of its own.
     pub(super) fn ask_preset(&mut self, name: &str) {
         let Some(inside) = self.project.document().inside(name).cloned() else { return };
-        let mut dialog = dialog("Save the group as a preset", self.settings.folder.as_deref())
+        let mut dialog = dialog("Save the group as a preset", self.folder().as_deref())
             .default_file_name(&format!("{}.json", name.replace('/', "_")));
         dialog.save_file();
         let base = self.project.document().base.clone();
-        self.files.preset = Some(template::absolute(crate::graph::Document { base, ..inside }));
+        self.files.preset = Some(template::absolute(Document { base, ..inside }));
         self.files.dialog = Some((dialog, Purpose::Preset));
+    }
+
+    /// Adds a graph, or a group that was saved as a preset, to the graph that is open.
+    fn insert(&mut self, path: &Path) {
+        match Document::load(path) {
+            Ok(preset) => {
+                let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+                let name = stem.replace(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '-', "_");
+                self.canvas.insert_graph(&mut self.project, &mut self.selection, &preset, &name);
+            }
+            Err(error) => self.toasts.complain(format!("{}: {error}", path.display())),
+        }
     }
 
     /// Saves to the graph's file, or asks for one; whether it was saved.
@@ -215,7 +240,7 @@ impl App {
         match self.project.file().map(Path::to_owned) {
             Some(file) => self.save_to(&file),
             None => {
-                self.files.ask_save(self.settings.folder.as_deref(), &self.project);
+                self.files.ask_save(self.folder().as_deref(), &self.project);
                 false
             }
         }
@@ -294,6 +319,7 @@ impl App {
                     }
                 }
                 Purpose::Graph | Purpose::Volume => self.open(&path),
+                Purpose::Insert => self.insert(&path),
             }
         } else if !matches!(dialog.state(), DialogState::Open) {
             self.files.dialog = None;
@@ -324,7 +350,7 @@ impl App {
 
     /// The graph that is open, for tests.
     #[cfg(test)]
-    pub(super) fn document(&self) -> &crate::graph::Document {
+    pub(super) fn document(&self) -> &Document {
         self.project.document()
     }
 }

@@ -4,7 +4,7 @@
 use std::path::PathBuf;
 use std::time::{Instant, SystemTime};
 
-use egui::{Panel, Ui, Window};
+use egui::{Grid, Panel, Ui, Window, vec2};
 
 use super::App;
 use crate::editor::project::{Autosave, Recoverable, recoverable, versions};
@@ -182,18 +182,22 @@ impl App {
         let listed = versions::list(state, file);
         let mut chosen = None;
         let mut is_open = true;
-        Window::new("Earlier versions").open(&mut is_open).resizable(false).show(ui.ctx(), |ui| {
+        // Clear of the menu that it was asked from, and of the graph.
+        let place = ui.ctx().content_rect().center_top() + vec2(-130.0, 60.0);
+        let window = Window::new("Earlier versions").open(&mut is_open).default_pos(place);
+        window.resizable(false).collapsible(false).default_width(260.0).show(ui.ctx(), |ui| {
             if listed.is_empty() {
                 ui.weak("None yet: one is kept at each save.");
             }
-            for version in &listed {
-                ui.horizontal(|ui| {
-                    ui.label(format!("{}. saved {}", version.number, ago(version.time)));
+            Grid::new("versions").num_columns(2).spacing(vec2(24.0, 6.0)).show(ui, |ui| {
+                for version in &listed {
+                    ui.label(format!("{}. written {}", version.number, ago(version.time)));
                     if ui.button(format!("Restore version {}", version.number)).clicked() {
                         chosen = Some(version.clone());
                     }
-                });
-            }
+                    ui.end_row();
+                }
+            });
         });
         self.safety.shows_versions = is_open;
         if let Some(version) = chosen {

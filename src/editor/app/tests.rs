@@ -1,5 +1,6 @@
 //! The window without a window: by AccessKit names.
 
+mod gestures;
 mod keys;
 mod safety;
 

@@ -1,10 +1,12 @@
 //! Groups: entering and leaving them, the way back on the screen, and muting and bypassing.
 
-use egui::{Area, Frame, Id, Order, Rect, vec2};
+use egui::{Area, Frame, Id, Order, Pos2, Rect, vec2};
 
 use super::desk::Desk;
 use super::{Canvas, Command};
+use crate::editor::{Project, Selection};
 use crate::graph::Document;
+use crate::nodes::catalog;
 
 impl Canvas {
     /// Shows the inside of a group from the next frame on; of the empty path the graph itself.
@@ -57,6 +59,30 @@ impl Canvas {
         });
         if let Some(group) = chosen {
             self.go_to(group);
+        }
+    }
+
+    /// Adds a graph as a group in the middle of what is seen, under a free name like `like`, and selects it.
+    pub fn insert_graph(
+        &mut self,
+        project: &mut Project,
+        selection: &mut Selection,
+        preset: &Document,
+        like: &str,
+    ) {
+        let middle = self.screen.map_or(Pos2::ZERO, |screen| self.view.to_canvas(screen.center()));
+        let place = [middle.x - 0.5 * super::scene::WIDTH, middle.y - super::scene::HEADER];
+        let (scene, group) = (self.scene.clone(), self.group.clone());
+        let mut name = None;
+        project.edit("Insert a graph", |document| {
+            if let Some(inside) = document.inside_mut(&group) {
+                Self::pin(&scene, inside);
+                let place = place.map(|x| f64::from(x.round()));
+                name = Some(inside.insert_preset(catalog(), preset, like, place));
+            }
+        });
+        if let Some(name) = name {
+            selection.only(&super::desk::path(&group, &name));
         }
     }
 

@@ -49,6 +49,7 @@ impl Possible {
             | Action::SaveAs
             | Action::Revert
             | Action::Versions
+            | Action::Insert
             | Action::OtherPart
             | Action::FitPicture
             | Action::ActualSize

@@ -1,6 +1,7 @@
 //! The file of a graph: opened leniently, written whole or not at all.
 
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use super::{Project, Step, versions};
 use crate::graph::{Document, DocumentError};
@@ -68,7 +69,11 @@ impl Project {
         document.rebase(catalog(), &folder);
         let text = document.to_json();
         let state = self.state.clone();
-        let keep = |text: &str| state.as_ref().and_then(|state| versions::keep(state, path, text).err());
+        let keep = |text: &str| {
+            let written = std::fs::metadata(path).and_then(|file| file.modified());
+            let then = written.unwrap_or_else(|_| SystemTime::now());
+            state.as_ref().and_then(|state| versions::keep(state, path, text, then).err())
+        };
         // What somebody else wrote there is a version too.
         let before = std::fs::read_to_string(path).ok().and_then(|before| keep(&before));
         atomic::write(path, text.as_bytes())?;

@@ -16,7 +16,7 @@ pub const MOST: usize = 10;
 pub struct Version {
     /// Counts up.
     pub number: u64,
-    /// When it was kept.
+    /// When the file was written that held it.
     pub time: SystemTime,
     /// Its text.
     pub path: PathBuf,
@@ -36,18 +36,21 @@ pub fn list(state: &Path, file: &Path) -> Vec<Version> {
     versions
 }
 
-/// Keeps a text of a graph's file as its newest version.
+/// Keeps a text of a graph's file, written then, as its newest version.
 ///
 /// # Errors
 /// Where it cannot be written; the others are then as they were.
-pub(super) fn keep(state: &Path, file: &Path, text: &str) -> Result<(), WriteError> {
+pub(super) fn keep(state: &Path, file: &Path, text: &str, then: SystemTime) -> Result<(), WriteError> {
     let known = list(state, file);
     let newest = known.first();
     if newest.is_some_and(|newest| std::fs::read_to_string(&newest.path).is_ok_and(|kept| kept == text)) {
         return Ok(());
     }
     let number = newest.map_or(1, |newest| newest.number + 1);
-    atomic::write(&folder(state, file).join(format!("{number:06}.json")), text.as_bytes())?;
+    let path = folder(state, file).join(format!("{number:06}.json"));
+    atomic::write(&path, text.as_bytes())?;
+    // Without it the version seems newer, no more.
+    let _ = std::fs::File::options().write(true).open(&path).and_then(|file| file.set_modified(then));
     for old in known.iter().skip(MOST - 1) {
         // One more than there should be does no harm.
         let _ = std::fs::remove_file(&old.path);

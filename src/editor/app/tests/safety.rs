@@ -98,6 +98,8 @@ fn graphs_and_folders_are_dropped_too() {
 #[test]
 fn the_way_back_to_the_file_and_to_its_versions() {
     let (_folder, file, state) = saved();
+    let before = std::time::SystemTime::now() - std::time::Duration::from_secs(200_000);
+    std::fs::File::options().write(true).open(&file).unwrap().set_modified(before).unwrap();
     let mut harness = harness_in(Some(state));
     harness.run_steps(2);
     harness.state_mut().open(&file);
@@ -118,10 +120,53 @@ fn the_way_back_to_the_file_and_to_its_versions() {
     for number in 1..=3 {
         assert!(harness.query_by_label(&format!("Restore version {number}")).is_some());
     }
+    for told in ["1. written 2 days ago", "3. written just now"] {
+        assert!(harness.query_by_label(told).is_some(), "{told}");
+    }
     harness.get_by_label("Restore version 2").click();
     harness.run_steps(3);
     assert_eq!(harness.state().document().about, "first");
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Z);
     harness.run_steps(2);
     assert_eq!(harness.state().document().about, "second");
+}
+
+#[test]
+fn what_is_written_down_goes_with_the_graph_where_the_device_is_lost() {
+    let (_folder, file, state) = saved();
+    let found = || crate::editor::project::recoverable(&state);
+    let mut lost = harness_in(Some(state.clone()));
+    let (faults, place) = (crate::gpu::Faults::default(), crate::editor::window::Place::default());
+    lost.state_mut().watch(faults.clone(), place.clone());
+    lost.run_steps(2);
+    lost.state_mut().open(&file);
+    say(lost.state_mut(), "mine");
+    lost.run_steps(3);
+    faults.lose("it was unplugged");
+    lost.run_steps(2);
+    lost.state_mut().end();
+    drop(lost);
+    let left = place.take().unwrap();
+    // The next window is not offered what it has.
+    let mut next = harness_in(Some(state.clone()));
+    next.run_steps(2);
+    assert!(next.query_by_label("Recover").is_none());
+    next.state_mut().show(left.project.unwrap());
+    next.state_mut().go_on_with(left.autosave);
+    let written = || std::fs::read_dir(state.join("recovery")).unwrap().flatten();
+    let records = || written().filter(|entry| entry.path().extension().is_some_and(|end| end == "json"));
+    say(next.state_mut(), "mine still");
+    // At the most every three seconds.
+    let start = std::time::Instant::now();
+    while !records()
+        .any(|entry| std::fs::read_to_string(entry.path()).is_ok_and(|text| text.contains("still")))
+    {
+        assert!(start.elapsed().as_secs() < 20, "nothing was written down");
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        next.run_steps(1);
+    }
+    // In the place of what the lost window wrote, and once.
+    assert_eq!(records().count(), 1);
+    drop(next);
+    assert_eq!(found()[0].document.about, "mine still");
 }
