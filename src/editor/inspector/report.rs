@@ -147,11 +147,19 @@ pub fn run(ui: &mut Ui, status: &NodeStatus) {
     }
 }
 
+/// As far as it is known: what was found in the cache under a new name took its time under another.
 fn cost(status: &NodeStatus) -> String {
     let cached = if status.cached { ", from the cache" } else { "" };
     let mib = status.bytes as f64 / f64::from(1 << 20);
-    let [all, on_gpu] = [status.cpu_ms, status.gpu_ms].map(time);
-    format!("{all}, of these {on_gpu} on the GPU; {mib:.1} MiB{cached}")
+    let is_known = |ms: f64| ms >= 0.05;
+    let times = match [status.cpu_ms, status.gpu_ms] {
+        [cpu_ms, gpu_ms] if is_known(gpu_ms) => {
+            format!("{}, of these {} on the GPU; ", time(cpu_ms), time(gpu_ms))
+        }
+        [cpu_ms, _] if is_known(cpu_ms) => format!("{}; ", time(cpu_ms)),
+        _ => String::new(),
+    };
+    format!("{times}{mib:.1} MiB{cached}")
 }
 
 fn told(ui: &mut Ui, decision: &Decision) {
@@ -161,4 +169,22 @@ fn told(ui: &mut Ui, decision: &Decision) {
         ui.label(what).on_hover_text(data);
         ui.weak(reason);
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_cost_is_told_as_far_as_it_is_known() {
+        let cost_of = |cpu_ms, gpu_ms, cached| {
+            cost(&NodeStatus { cpu_ms, gpu_ms, cached, bytes: 3 << 20, ..NodeStatus::default() })
+        };
+        assert_eq!(
+            cost_of(4500.0, 4100.0, true),
+            "4.5 s, of these 4.1 s on the GPU; 3.0 MiB, from the cache"
+        );
+        assert_eq!(cost_of(12.0, 0.0, false), "12 ms; 3.0 MiB");
+        assert_eq!(cost_of(0.0, 0.0, true), "3.0 MiB, from the cache");
+    }
 }

@@ -1,6 +1,6 @@
 //! The menu bar, made from the table of actions.
 
-use egui::{Button, MenuBar, Ui};
+use egui::{Button, MenuBar, ScrollArea, Ui};
 
 use super::{Possible, key_text};
 use crate::editor::action::{ACTIONS, Action, MENUS};
@@ -12,16 +12,20 @@ pub fn show(ui: &mut Ui, possible: Possible, title: &str) -> Vec<Action> {
         for menu in MENUS {
             ui.menu_button(menu, |ui| {
                 ui.set_min_width(210.0);
-                for spec in ACTIONS.iter().filter(|spec| spec.menu == menu) {
-                    if spec.is_apart {
-                        ui.separator();
+                // In a low window the longest menu has more lines than it.
+                let height = ui.ctx().content_rect().bottom() - ui.cursor().top() - 16.0;
+                ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
+                    for spec in ACTIONS.iter().filter(|spec| spec.menu == menu) {
+                        if spec.is_apart {
+                            ui.separator();
+                        }
+                        let button = Button::new(spec.label).shortcut_text(key_text(ui.ctx(), spec));
+                        if ui.add_enabled(possible.is(spec.action), button).clicked() {
+                            asked.push(spec.action);
+                            ui.close();
+                        }
                     }
-                    let button = Button::new(spec.label).shortcut_text(key_text(ui.ctx(), spec));
-                    if ui.add_enabled(possible.is(spec.action), button).clicked() {
-                        asked.push(spec.action);
-                        ui.close();
-                    }
-                }
+                });
             });
         }
         ui.separator();

@@ -166,3 +166,23 @@ fn the_theme_is_chosen_from_its_menu() {
     }
     assert_eq!(harness.state().settings.theme, ThemeChoice::Dark);
 }
+
+#[test]
+fn a_menu_that_is_higher_than_the_window_is_scrolled() {
+    let mut harness = harness();
+    harness.set_size(vec2(1000.0, 420.0));
+    harness.run_steps(2);
+    harness.get_by_label("View").click();
+    harness.run_steps(3);
+    let first = harness.get_by_label_contains("Command palette").rect();
+    harness.hover_at(first.center());
+    harness.run_steps(2);
+    let (unit, phase, modifiers) = (egui::MouseWheelUnit::Point, egui::TouchPhase::Move, Modifiers::NONE);
+    harness.event(egui::Event::MouseWheel { unit, delta: vec2(0.0, -2000.0), phase, modifiers });
+    harness.run_steps(60);
+    let last = harness.get_by_label_contains("System theme");
+    assert!(last.rect().bottom() < 420.0, "{:?}", last.rect());
+    last.click();
+    harness.run_steps(3);
+    assert_eq!(harness.state().settings.theme, ThemeChoice::System);
+}
