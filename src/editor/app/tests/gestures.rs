@@ -85,6 +85,9 @@ fn a_graph_and_a_group_are_saved_where_the_dialog_says() {
     let file = folder.path().join("graph.json");
     assert!(!harness.state().project.is_unsaved() && harness.state().project.file() == Some(&file));
     assert!(Document::load(&file).unwrap().nodes.contains_key("medium"));
+    // Dialogs begin at the graph from now on.
+    harness.state_mut().settings.folder = None;
+    assert_eq!(harness.state().folder().as_deref(), Some(folder.path()));
     // A group as a graph of its own, which leaves this one as it is.
     let names = ["medium".to_owned()];
     harness.state_mut().project.edit("group", |document| {
