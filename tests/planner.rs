@@ -13,6 +13,7 @@ use glam::{DMat4, DVec3, IVec3};
 use tyndall::graph::{CancelToken, Decision, Document, Target};
 use tyndall::image::Image;
 use tyndall::nodes;
+use tyndall::planner::SCAN_ERROR;
 use tyndall::session::Session;
 use tyndall::volume::grid::Grid;
 use tyndall::volume::vdb;
@@ -48,6 +49,22 @@ fn changed(text: &str, settings: &[&str]) -> Document {
         document.set(nodes::catalog(), name, value).unwrap();
     }
     document
+}
+
+/// The cloud with 32³ voxels of these densities instead, read from a file in this folder.
+fn voxels(folder: &Path, density: impl Fn([usize; 3]) -> f32) -> String {
+    let path = folder.join("voxels.vdb");
+    let n = 32;
+    let values: Vec<f32> = (0..n * n * n).map(|idx| density([idx % n, idx / n % n, idx / n / n])).collect();
+    let voxel_m = 2.0 / n as f64;
+    let map =
+        DMat4::from_translation(DVec3::splat(-15.5 * voxel_m)) * DMat4::from_scale(DVec3::splat(voxel_m));
+    let grid = Grid::from_dense("density", 0.0, map, IVec3::ZERO, [n; 3], &values);
+    std::fs::write(&path, vdb::to_bytes(&[grid], vdb::WriteOptions::default())).unwrap();
+    CLOUD.replace(
+        r#""ball": { "type": "shape", "kind": "cloud", "size": [2, 2, 2], "resolution": 16, "seed": 3 }"#,
+        &format!(r#""ball": {{ "type": "load_vdb", "path": {:?} }}"#, path.to_str().unwrap()),
+    )
 }
 
 /// A picture, and what each node decided.
@@ -244,23 +261,10 @@ fn thin_cells_are_not_split() {
     // differ by h^2 f''/32 in the mean along each axis, 3/(32 * 36) = 0.26 % of it.
     let Some(mut session) = common::session() else { return };
     let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("smooth.vdb");
-    let n = 32;
-    let distance = |voxel: usize| (voxel as f32 - 15.5) / 6.0;
-    let value = |idx: usize| {
-        let axes = [idx % n, idx / n % n, idx / n / n].map(distance);
+    let text = voxels(folder.path(), |cell| {
+        let axes = cell.map(|n| (n as f32 - 15.5) / 6.0);
         (-0.5 * axes.iter().map(|x| x * x).sum::<f32>()).exp()
-    };
-    let values: Vec<f32> = (0..n * n * n).map(value).collect();
-    let voxel_m = 2.0 / n as f64;
-    let map =
-        DMat4::from_translation(DVec3::splat(-15.5 * voxel_m)) * DMat4::from_scale(DVec3::splat(voxel_m));
-    let grid = Grid::from_dense("density", 0.0, map, IVec3::ZERO, [n; 3], &values);
-    std::fs::write(&path, vdb::to_bytes(&[grid], vdb::WriteOptions::default())).unwrap();
-    let text = CLOUD.replace(
-        r#""ball": { "type": "shape", "kind": "cloud", "size": [2, 2, 2], "resolution": 16, "seed": 3 }"#,
-        &format!(r#""ball": {{ "type": "load_vdb", "path": {:?} }}"#, path.to_str().unwrap()),
-    );
+    });
     let graph = changed(&text, &["medium.max_resolution=0", "medium.density_scale=5"]);
     let both = both(&mut session, &graph, "medium", "split");
     let data = make(&mut session, &graph, true).decision("medium", "split").data.clone();
@@ -326,6 +330,22 @@ fn empty_blocks_are_passed_unseen() {
     let graph = cloud(&["ball.resolution=48", "medium.max_resolution=48", "ball.seed=5"]);
     let both = both(&mut session, &graph, "march", "empty_space");
     assert_apart("empty blocks", &both, ROUNDING);
+}
+
+#[test]
+fn wide_light_is_scanned_from_slab_to_slab() {
+    // Cells of independent density are the worst case: up to half a cell's depth is lost (`scan/tests.rs`), here 0.19,
+    // of light that was scattered once. Each of 16 lights errs by itself, each pixel takes a mean over some 20 cells,
+    // and half of the light is scattered more often: 0.19 / 2 / sqrt(20), and as much below what is convex.
+    let Some(mut session) = common::session() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let text =
+        voxels(folder.path(), |[x, y, z]| ((x * 7919 + y * 104_729 + z * 1_299_709) % 101) as f32 / 100.0)
+            .replace(r#""radiance": [0, 0, 0]"#, r#""path": "../data/sky.exr""#);
+    let settings = ["medium.max_resolution=32", "medium.density_scale=6", "split.count=16"];
+    let both = both(&mut session, &changed(&text, &settings), "beams", "depths");
+    assert!(both[0].beauty() != both[1].beauty(), "nothing was scanned");
+    assert_apart("scans", &both, SCAN_ERROR);
 }
 
 #[test]
@@ -423,11 +443,11 @@ fn stages_run_as_often_as_foretold() {
         let times = session.gpu().take_stage_times();
         let residual = explained.nodes.iter().find(|node| node.name == "residual").unwrap();
         for work in &residual.report.stages {
-            // Each sweep is followed by another stage, and so is counted once; the coarsest grid has no coarser one.
+            // Each sweep is followed by another stage, and so is counted once; the coarsest grid has no coarser one,
+            // and other stages may go in parts.
             let done = times.iter().filter(|time| time.stage == work.stage).count();
-            let once = ["isotropic_residual/sources", "isotropic_residual/sweep"].contains(&work.stage);
             assert!(
-                !once || done == work.runs,
+                work.stage != "isotropic_residual/sweep" || done == work.runs,
                 "{quality}: {} ran {done} times, not {}",
                 work.stage,
                 work.runs

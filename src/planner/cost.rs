@@ -12,7 +12,7 @@ use crate::graph::StageWork;
 const ON_CPU: &[(&str, f64)] = &[
     ("walk", 1.3),
     ("principal_propagation/scan", 9.0),
-    ("principal_propagation/gather", 1.2),
+    ("principal_propagation/pack", 1.2),
     ("isotropic_residual/sources", 1.2),
     ("isotropic_residual/sweep", 0.68),
     ("isotropic_residual/gather_lobes", 1.05),

@@ -342,38 +342,6 @@ pub fn empty_space(n_filled: usize, n_blocks: usize, prune: bool) -> (bool, Deci
     (true, Decision::left_out(RULE, what, "nothing is there to be met", data))
 }
 
-/// How optical depths to parallel lights are found.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Depths {
-    /// From every corner to the light.
-    Walk,
-    /// Running sums along lines that follow the beam.
-    Scan,
-}
-
-/// A scan costs as much as a walk of so many samples a corner (measured on 112 x 96 x 128 cells, where a
-/// walk of 77 takes 0.6 of the scan's time).
-const SAMPLES_OF_A_SCAN: f64 = 125.0;
-
-/// The cheaper way, or the one that was asked for; `fits` says whether the device holds a scan's lines.
-pub fn depths(asked: &str, is_closed: bool, samples: f64, fits: bool) -> (Depths, Decision) {
-    const RULE: &str = "depths";
-    let data =
-        format!("a walk takes {} samples, a scan costs as much as {SAMPLES_OF_A_SCAN}", number(samples));
-    let walk =
-        |reason: &str| (Depths::Walk, Decision::kept(RULE, "a walk to the light", reason, data.clone()));
-    let scan =
-        |reason: &str| (Depths::Scan, Decision::kept(RULE, "a scan along the light", reason, data.clone()));
-    match asked {
-        _ if is_closed => walk("a shape in closed form needs no samples"),
-        "scan" => scan("it was asked for"),
-        "walk" => walk("it was asked for"),
-        _ if samples <= SAMPLES_OF_A_SCAN => walk("it is cheaper"),
-        _ if !fits => walk("the device does not hold the lines of a scan"),
-        _ => scan("it is cheaper"),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -421,17 +389,6 @@ mod tests {
         // The whole model splits once more than needed.
         assert!(split(Split { sigma_t_max: 1.0, ..facts }, false).0 < 0.2);
         assert!(split(Split { sigma_t_max: 1.0, ..facts }, true).0 > 0.2);
-    }
-
-    #[test]
-    fn the_cheaper_way_to_the_light_is_taken() {
-        let found = |asked, is_closed, samples, fits| depths(asked, is_closed, samples, fits).0;
-        assert_eq!(found("auto", false, 50.0, true), Depths::Walk);
-        assert_eq!(found("auto", false, 500.0, true), Depths::Scan);
-        assert_eq!(found("auto", false, 500.0, false), Depths::Walk);
-        assert_eq!(found("scan", false, 50.0, false), Depths::Scan);
-        assert_eq!(found("walk", false, 500.0, true), Depths::Walk);
-        assert_eq!(found("scan", true, 500.0, true), Depths::Walk);
     }
 
     #[test]

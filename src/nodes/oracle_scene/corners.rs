@@ -81,7 +81,7 @@ pub fn corner_field(cells: &Field<f64>, value: impl Fn(DVec3) -> f64 + Sync) -> 
 }
 
 /// The first axis on which the vector is longest.
-fn largest_axis(v: DVec3) -> usize {
+pub fn largest_axis(v: DVec3) -> usize {
     let [x, y, z] = v.abs().to_array();
     if x >= y && x >= z {
         0

@@ -7,7 +7,7 @@ use crate::geometry::Mesh;
 use crate::gpu::Format;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Report, StageWork, Value};
 use crate::light::Ordinates;
-use crate::planner::{self, Depths};
+use crate::planner::{self, DepthFacts, Depths};
 use crate::wire::{AtlasLayout, Beam, Beams, LightField, Medium, Place, Surfaces};
 
 mod aligned;
@@ -35,8 +35,10 @@ static SPEC: NodeSpec = NodeSpec {
     outputs: &[PortSpec::new("beams", PortType::Beams, "the light in the medium")],
     params: &[
         ParamSpec::choice("scheme", &["auto", "scan", "walk", "literal"]).doc(
-            "walk: from every corner to the light, exact but for its samples; scan: running sums along lines that follow the beam, \
-             its cost independent of the way through the medium; auto: the cheaper one. A homogeneous shape needs neither: its depth is known. \
+            "walk: from every corner to the light, exact but for its samples; scan: from slab to slab of the medium, each from the one \
+             before, its cost independent of the way through the medium, shadows far behind what casts them soft by a cell; auto: scans \
+             for light that stands for a wide region and has no sharp shadows, where they are cheaper, and walks for the rest. A \
+             homogeneous shape needs neither: its depth is known. \
              literal: the seed paper's own scheme, for comparison: a lobe a cell hops from neighbor to neighbor on a grid for each \
              ordinate; the light of all ordinates reaches the camera through isotropic_residual. It does not converge, and knows no surfaces.",
         ),
@@ -77,15 +79,17 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
     let powers: Vec<[f64; 3]> = beams.iter().map(|beam| beam.power).collect();
     let (is_carried, decision) = planner::beams(medium.albedo, &powers, run.prune);
     let mut decisions = vec![decision];
-    // The scan's lines stand half a cell apart: the device must hold twice the cells along an axis.
-    let lines = 2 * medium.lattice.dims.into_iter().max().unwrap_or(0) + 3;
-    let samples = walk::samples(medium, &beams);
-    let (depths, decision) = planner::depths(
-        run.params.text("scheme"),
-        medium.homogeneous.is_some(),
-        samples,
-        lines <= run.gpu.max_texture_3d() as usize,
-    );
+    let layout = AtlasLayout::new(run.gpu.max_texture_3d() as usize, &medium.lattice, beams.len());
+    let spreads: Vec<f64> =
+        light.ordinates.iter().map(|ordinate| ordinate.region.unwrap_or(ordinate.a0)).collect();
+    let facts = DepthFacts {
+        asked: run.params.text("scheme"),
+        is_closed: medium.homogeneous.is_some(),
+        samples: walk::samples(medium, &beams),
+        spreads: &spreads,
+        fits: scan::fits(run, medium, layout),
+    };
+    let (depths, decision) = planner::depths(facts, run.prune);
     let asks_for_widening = run.params.text("peak") == "widening";
     let mut widens = false;
     let mut stages = Vec::new();
@@ -96,9 +100,9 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
             widens = has_peak;
             decisions.push(decision);
         }
-        match depths {
+        match &depths {
             Depths::Walk => stages.push(walk::work(medium, &beams)),
-            Depths::Scan => stages.extend(scan::work(medium, beams.len())),
+            Depths::Scan(_) => stages.extend(scan::work(medium, beams.len())),
         }
         stages.extend(widens.then_some(StageWork {
             stage: "widening",
@@ -107,7 +111,6 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
         }));
         stages.extend(shadow::work(run, beams.len()));
     }
-    let layout = AtlasLayout::new(run.gpu.max_texture_3d() as usize, &medium.lattice, beams.len());
     let n_atlases = u64::from(is_carried) * (1 + u64::from(widens));
     let report = Report {
         decisions,
@@ -130,7 +133,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let mut carried = Beams { ambient: light.ambient, ..Beams::new(&medium.lattice, beams) };
     if is_carried {
         let tau = match depths {
-            Depths::Scan => scan::scan(run, medium, &carried.beams)?,
+            Depths::Scan(which) => scan::scan(run, medium, &carried.beams, &which)?,
             Depths::Walk => walk::walk(run, medium, &carried.beams)?,
         };
         if widens {
