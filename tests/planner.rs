@@ -432,6 +432,26 @@ fn what_is_foretold_is_what_is_done() {
 }
 
 #[test]
+fn ways_out_of_the_medium_cost_what_walks_cost() {
+    // Twelve walks a pixel that meets matter, each through half of 16 cells in the mean and of at least 10 bytes a sample;
+    // the cloud covers a good part of the picture.
+    let Some(mut session) = common::session() else { return };
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs/cumulus.json");
+    let text = std::fs::read_to_string(path).unwrap();
+    let straight = text.replace("blur.environment -> march", "sky.environment -> march");
+    let [bent, straight] = [text, straight].map(|text| {
+        let graph = changed(&text, &["medium.max_resolution=16", "camera.width=64", "camera.height=36"]);
+        let explained = session.explain(&graph, Target::Nodes(&["march"])).unwrap();
+        let march = explained.nodes.iter().find(|node| node.name == "march").unwrap();
+        let stage = march.report.stages.iter().find(|stage| stage.stage == "raymarch").unwrap();
+        stage.moved_bytes.unwrap()
+    });
+    let of_all_pixels = 64 * 36 * 12 * 8 * 10;
+    let more = bent - straight;
+    assert!((of_all_pixels / 4..2 * of_all_pixels).contains(&more), "{more} of {of_all_pixels}");
+}
+
+#[test]
 fn stages_run_as_often_as_foretold() {
     let Some(mut session) = common::session() else { return };
     session.gpu().time_stages();

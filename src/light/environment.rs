@@ -54,6 +54,8 @@ pub const STACK_X: [f64; 16] =
 
 /// Angles of [`Stack::turns`].
 pub const STACK_TURNS: usize = 3;
+/// Ways about a ray that each of them stands for.
+pub const STACK_WAYS_AROUND: usize = 4;
 
 /// What of a map shines forward through x scatterings, for each x of [`STACK_X`].
 #[derive(Debug, Clone, PartialEq)]

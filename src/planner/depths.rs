@@ -28,7 +28,7 @@ pub struct DepthFacts<'a> {
 }
 
 /// A scan costs as much as a walk of so many samples a corner (measured on 128 x 80 x 112 cells).
-const SAMPLES_OF_A_SCAN: f64 = 16.0;
+const SAMPLES_OF_A_SCAN: f64 = 19.0;
 
 /// Below this spread the light of a beam comes from so wide a region that it has no shadow finer than a cell where a
 /// scan is a slab behind what casts it: from 4 degrees around its direction, of which the mean cosine is this.
@@ -94,6 +94,6 @@ mod tests {
         let facts =
             DepthFacts { asked: "auto", is_closed: false, samples: 50.0, spreads: &mixed, fits: true };
         let data = depths(facts, true).1.data;
-        assert_eq!(data, "a walk takes 50 samples, a scan costs as much as 16; 1 of 2 beams wide");
+        assert_eq!(data, "a walk takes 50 samples, a scan costs as much as 19; 1 of 2 beams wide");
     }
 }

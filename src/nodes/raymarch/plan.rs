@@ -7,6 +7,7 @@ use super::layers::Pixel;
 use crate::camera::Camera;
 use crate::graph::{NodeError, Report, StageWork};
 use crate::light::Window;
+use crate::light::environment::{Environment, STACK_TURNS, STACK_WAYS_AROUND};
 use crate::optics::delta::DeltaScaled;
 use crate::planner::{self, Colors, Gathering};
 use crate::wire::{Beam, Beams, Channels, Medium, Place, Residual};
@@ -87,7 +88,10 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
     let pixels = (n_pixels * size_of::<Pixel>()) as f64;
     let n_rays = n_pixels as f64 * n_sub * n_sub;
     let of_ray = probe(medium, camera, run.params.f64("step"))?;
-    let moved = |of_lit: f64| n_rays * (of_ray.lit * of_lit + of_ray.void * BYTES_OF_A_VOID_PAIR) + pixels;
+    let of_bending = if is_bent(run) { of_ray.hit * bytes_of_bending(medium) } else { 0.0 };
+    let moved = |of_lit: f64| {
+        n_rays * (of_ray.lit * of_lit + of_ray.void * BYTES_OF_A_VOID_PAIR + of_bending) + pixels
+    };
     let besides = bytes_besides_beams(&plan, medium, residual);
     let of_beams = bytes_of_beams(&plan, medium, &beams);
     let looked_up = moved(besides + of_beams);
@@ -180,15 +184,34 @@ fn bytes_of_beams(plan: &Plan, medium: &Medium, beams: &[Beam]) -> f64 {
         + beams.iter().filter(is_placed).count() as f64 * ARITHMETIC_OF_A_PLACE
 }
 
-/// A sample of a walk to the eye, with its arithmetic.
+/// Whether light of an environment's stack leaves the medium by bent ways.
+fn is_bent(run: &Run) -> bool {
+    let environment = run.inputs.maybe::<Environment>("environment");
+    matches!(environment, Some(Environment::Map(map)) if map.stack.is_some())
+}
+
+/// A sample of a walk, with its arithmetic.
 const BYTES_OF_A_SAMPLE: f64 = 10.0;
+
+/// The same where it may pass empty blocks, as measured.
+const BYTES_OF_A_SAMPLE_PAST: f64 = 16.0;
+
+/// Cells from a place in the medium to where a walk leaves it.
+fn way_out(medium: &Medium) -> f64 {
+    0.5 * medium.lattice.occupied.into_iter().sum::<usize>() as f64 / 3.0
+}
+
+/// What a ray that meets matter reads for the ways by which light leaves (`shaders/raymarch/environment.wgsl`): walks to
+/// their ends.
+fn bytes_of_bending(medium: &Medium) -> f64 {
+    (STACK_TURNS * STACK_WAYS_AROUND) as f64 * BYTES_OF_A_SAMPLE_PAST * way_out(medium)
+}
 
 /// What a gathering moves: for each corner of filled blocks the beams, a walk to the eye through half of the
 /// medium, and the sums.
 fn bytes_of_gathering(plan: &Plan, medium: &Medium, of_beams: f64) -> f64 {
     let n_corners = (medium.blocks.n_filled() * CORNERS_OF_A_BLOCK) as f64;
-    let way = 0.5 * medium.lattice.occupied.into_iter().sum::<usize>() as f64 / 3.0;
-    n_corners * (of_beams + BYTES_OF_A_SAMPLE * way + 16.0 * plan.channels.count as f64)
+    n_corners * (of_beams + BYTES_OF_A_SAMPLE * way_out(medium) + 16.0 * plan.channels.count as f64)
 }
 
 /// Of 8³ cells, with the faces that blocks share counted for each.
@@ -200,6 +223,8 @@ struct Steps {
     lit: f64,
     /// In others.
     void: f64,
+    /// Share of the rays that meet blocks that hold something.
+    hit: f64,
 }
 
 /// Rays across the probe's picture, and down.
@@ -220,7 +245,7 @@ fn probe(medium: &Medium, camera: &Camera, step: f64) -> Result<Steps, NodeError
     let k = medium.albedo.into_iter().map(|albedo| DeltaScaled::new(albedo, medium.g).k).fold(1.0, f64::min);
     let share = if medium.homogeneous.is_some() { 1.0 } else { MEAN_OF_LARGEST };
     let pairs_of_stride = STRIDE / (2.0 * step);
-    let mut sum = Steps { lit: 0.0, void: 0.0 };
+    let mut sum = Steps { lit: 0.0, void: 0.0, hit: 0.0 };
     for idx in 0..N_RAYS * N_RAYS {
         let at = |n: usize| 2.0 * (n as f64 + 0.5) / N_RAYS as f64 - 1.0;
         let direction = (forward + at(idx % N_RAYS) * right - at(idx / N_RAYS) * up).normalize();
@@ -238,7 +263,8 @@ fn probe(medium: &Medium, camera: &Camera, step: f64) -> Result<Steps, NodeError
             tau += k * share * f64::from(largest) * STRIDE * lattice.cell_m;
             t += STRIDE;
         }
+        sum.hit += if tau > 0.0 { 1.0 } else { 0.0 };
     }
     let n = (N_RAYS * N_RAYS) as f64;
-    Ok(Steps { lit: sum.lit / n, void: sum.void / n })
+    Ok(Steps { lit: sum.lit / n, void: sum.void / n, hit: sum.hit / n })
 }

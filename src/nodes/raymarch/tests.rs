@@ -5,14 +5,14 @@ use serde_json::json;
 
 use super::MarchParams;
 use super::layers::Pixel;
-use super::oracle::{MarchScene, Marched, Ray, bend, box_interval, march_through, sums};
+use super::oracle::{MarchScene, Marched, Ray, box_interval, march_through, sums};
 use super::sums::GatherParams;
 use crate::camera::Camera;
 use crate::geometry::Mesh;
 use crate::gpu::{Gpu, Shader, wgsl_constant};
 use crate::graph::{PortType, Value};
 use crate::image::{ALPHA, BEAUTY, DEPTH, Image};
-use crate::light::environment::Environment;
+use crate::light::environment::{Environment, STACK_WAYS_AROUND};
 use crate::light::{Ordinate, Ordinates, Window};
 use crate::nodes::oracle_scene::OracleBeam;
 use crate::nodes::testing::{
@@ -444,7 +444,7 @@ fn layouts_are_those_of_the_shader() {
                 Shader::expand(file, &choices.map(|(name, value)| (name, value.to_owned()))).unwrap();
             wgsl_constant(&shader, name).unwrap()
         };
-        assert_eq!(constant("raymarch.wgsl", "WAYS_AROUND"), [bend::WAYS_AROUND as f64]);
+        assert_eq!(constant("raymarch.wgsl", "WAYS_AROUND"), [STACK_WAYS_AROUND as f64]);
         assert_eq!(constant("raymarch/gather.wgsl", "DARK"), [f64::from(sums::DARK as f32)]);
     }
 }

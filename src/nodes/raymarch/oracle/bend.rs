@@ -23,10 +23,7 @@ use std::f64::consts::PI;
 
 use glam::DVec3;
 
-use crate::light::environment::{STACK_TURNS, STACK_X, Stack};
-
-/// Directions around the view for each turn.
-pub const WAYS_AROUND: usize = 4;
+use crate::light::environment::{STACK_TURNS, STACK_WAYS_AROUND, STACK_X, Stack};
 
 /// The turns for x scatterings, between levels linear in x.
 pub fn turns_at(stack: &Stack, x: f64) -> [f64; STACK_TURNS] {
@@ -50,8 +47,8 @@ pub fn bend(
     let side = direction.cross(axis).normalize();
     let other = direction.cross(side);
     let ways = turns.into_iter().enumerate().flat_map(|(ring, turn)| {
-        (0..WAYS_AROUND).map(move |n| {
-            let around = 2.0 * PI * (n as f64 + 0.5 * (ring % 2) as f64) / WAYS_AROUND as f64;
+        (0..STACK_WAYS_AROUND).map(move |n| {
+            let around = 2.0 * PI * (n as f64 + 0.5 * (ring % 2) as f64) / STACK_WAYS_AROUND as f64;
             turn.cos() * direction + turn.sin() * (around.cos() * side + around.sin() * other)
         })
     });
