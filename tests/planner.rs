@@ -335,8 +335,8 @@ fn empty_blocks_are_passed_unseen() {
 #[test]
 fn wide_light_is_scanned_from_slab_to_slab() {
     // Cells of independent density are the worst case: up to half a cell's depth is lost (`scan/tests.rs`), here 0.19,
-    // of light that was scattered once. Each of 16 lights errs by itself, each pixel takes a mean over some 20 cells,
-    // and half of the light is scattered more often: 0.19 / 2 / sqrt(20), and as much below what is convex.
+    // of light that was scattered once, by each of 16 lights for itself and each of some 20 cells of a pixel:
+    // 0.19 / 2 / sqrt(16 * 20) = 0.5 %. Light is convex in depth, so that as much again is not made good by the others.
     let Some(mut session) = common::session() else { return };
     let folder = tempfile::tempdir().unwrap();
     let text =
@@ -433,8 +433,8 @@ fn what_is_foretold_is_what_is_done() {
 
 #[test]
 fn ways_out_of_the_medium_cost_what_walks_cost() {
-    // Twelve walks a pixel that meets matter, each through half of 16 cells in the mean and of at least 10 bytes a sample;
-    // the cloud covers a good part of the picture.
+    // Twelve walks a pixel that meets matter, each through half of 16 cells in the mean, of 10 bytes a sample, or 16 where
+    // it looks blocks up; the cloud covers a good part of the picture.
     let Some(mut session) = common::session() else { return };
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("graphs/cumulus.json");
     let text = std::fs::read_to_string(path).unwrap();

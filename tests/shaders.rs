@@ -38,6 +38,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("skips", SWITCH),
     ("skips_dark", SWITCH),
     ("glows", SWITCH),
+    ("whole", SWITCH),
     ("depths", SWITCH),
     ("walls", SWITCH),
     ("directions", &["4", "16", "64"]),

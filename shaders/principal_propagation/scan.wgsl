@@ -4,6 +4,7 @@
 #import "lib/walk.wgsl"
 
 struct ScanParams {
+    shape: Shape,
     // The first corner that is looked from, and how many are.
     low: vec3u,
     // Where the depths of this beam begin.
@@ -60,6 +61,13 @@ fn row(start: u32, columns: vec4u, weights: vec4f) -> Row {
     return Row(dot(weights, four), min(four.y, four.z), max(four.y, four.z));
 }
 
+// Whether ways are walked to their end, from every corner that is looked from; no plane is known then.
+const IS_WHOLE: bool = {whole};
+
+fn keep(corner: vec3u, tau: f32) {
+    depths[params.first + corner.x + params.corners.x * (corner.y + params.corners.y * corner.z)] = min(tau, DEEPEST);
+}
+
 // Corners that a thread takes one after the other, across the beam: their ways cross the known plane by rows that
 // they share.
 const COLUMN: u32 = 8u;
@@ -76,6 +84,14 @@ fn principal_propagation_scan(@builtin(global_invocation_id) id: vec3u) {
     }
     let low = params.low + first;
     let n_corners = min(COLUMN, params.extent[v] - first[v]);
+    if IS_WHOLE {
+        for (var n = 0u; n < n_corners; n += 1u) {
+            var corner = low;
+            corner[v] += n;
+            keep(corner, walk(sigma_t, linear_clamp, params.shape, params.cell_m, vec3f(corner) - 0.5, params.to_light, 1e30));
+        }
+        return;
+    }
     let steps = (params.until - f32(low[params.along])) / params.to_light[params.along];
     let n_samples = ceil(steps);
     let dt = steps / n_samples;
@@ -99,8 +115,7 @@ fn principal_propagation_scan(@builtin(global_invocation_id) id: vec3u) {
         for (var step = 0.5; step < n_samples; step += 1.0) {
             sum += extinction(sigma_t, linear_clamp, p + step * dt * params.to_light);
         }
-        let tau = sum * dt * params.cell_m + clamp(there, min(near.least, far.least), max(near.most, far.most));
-        depths[params.first + corner.x + params.corners.x * (corner.y + params.corners.y * corner.z)] = min(tau, DEEPEST);
+        keep(corner, sum * dt * params.cell_m + clamp(there, min(near.least, far.least), max(near.most, far.most)));
         before = near;
         near = far;
         far = after;

@@ -1,9 +1,9 @@
 //! A long stage as several submissions, between which a cancel is heard.
 //!
 //! The first submission is small; each further one is as large as would have taken [`PATIENCE`], up to what the stage
-//! can submit at once. So a GPU, which is done sooner, gets one more submission than without, and a processor that takes
-//! seconds for the stage still hears a cancel. How a stage is divided depends on the clock; what it computes does not,
-//! because its threads do not know of each other. Tested by what is covered, whatever a submission takes.
+//! can submit at once. So a GPU, which is done sooner, gets one more submission each time than without, and a processor that
+//! takes seconds for the stage still hears a cancel. How a stage is divided depends on the clock; what it computes does
+//! not, because its parts keep their order. Tested by what is covered, whatever a submission takes.
 
 use std::ops::Range;
 use std::time::{Duration, Instant};

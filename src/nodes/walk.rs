@@ -60,7 +60,7 @@ pub(super) fn samples(medium: &Medium, beams: &[Beam]) -> f64 {
 }
 
 /// A depth in closed form costs as much as so many samples (measured).
-const SAMPLES_OF_A_SHAPE: f64 = 16.0;
+pub(super) const SAMPLES_OF_A_SHAPE: f64 = 16.0;
 
 /// What it moves: the samples of each corner and beam, and a depth.
 pub(super) fn work(medium: &Medium, beams: &[Beam]) -> StageWork {

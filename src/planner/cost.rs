@@ -11,7 +11,7 @@ use crate::graph::StageWork;
 /// Time over floor of each stage on a software driver.
 const ON_CPU: &[(&str, f64)] = &[
     ("walk", 1.3),
-    ("principal_propagation/scan", 1.8),
+    ("principal_propagation/scan", 3.1),
     ("principal_propagation/pack", 1.5),
     ("isotropic_residual/sources", 1.2),
     ("isotropic_residual/sweep", 0.68),

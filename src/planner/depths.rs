@@ -19,34 +19,35 @@ pub struct DepthFacts<'a> {
     pub asked: &'a str,
     /// Whether the medium is a shape in closed form.
     pub is_closed: bool,
-    /// Of a walk from a corner.
-    pub samples: f64,
-    /// Of each beam the mean cosine around its direction of the light that it stands for.
-    pub spreads: &'a [f64],
+    /// Of each beam, the samples of a walk from a corner, and the mean cosine around its direction of the light that it
+    /// stands for.
+    pub beams: &'a [(f64, f64)],
     /// Whether the device holds what a scan keeps.
     pub fits: bool,
 }
 
-/// A scan costs as much as a walk of so many samples a corner (measured on 128 x 80 x 112 cells).
+/// A scan costs as much as a walk of so many samples a corner (measured by a software driver on 128 x 80 x 112 cells).
 const SAMPLES_OF_A_SCAN: f64 = 19.0;
 
 /// Below this spread the light of a beam comes from so wide a region that it has no shadow finer than a cell where a
-/// scan is a slab behind what casts it: from 4 degrees around its direction, of which the mean cosine is this.
+/// scan is a slab behind what casts it: a disk of 5 degrees around its direction, eight cells away 0.7 cells.
 const WIDE: f64 = 0.998;
 
-/// How far scans of wide light may change a picture, relative: of cells that know nothing of each other, as measured
-/// (`tests/planner.rs`). A sharp checkerboard and clouds change by less than a fiftieth of that.
+/// How far scans of wide light may change a picture, relative, as measured (`tests/planner.rs`) where cells know nothing
+/// of each other and are up to 0.4 optical depths thick; it goes with that thickness. What a grid resolves, clouds of 1.2
+/// a cell and a sharp checkerboard among them, changes by less than a fiftieth of it.
 pub const SCAN_ERROR: f64 = 0.015;
-
 /// The cheaper way, or the one that was asked for.
 pub fn depths(facts: DepthFacts, prune: bool) -> (Depths, Decision) {
     const RULE: &str = "depths";
-    let n = facts.spreads.len();
-    let wide: Vec<bool> = facts.spreads.iter().map(|spread| *spread < WIDE).collect();
-    let n_wide = wide.iter().filter(|is_wide| **is_wide).count();
+    let n = facts.beams.len();
+    let is_scanned: Vec<bool> =
+        facts.beams.iter().map(|(samples, spread)| *spread < WIDE && *samples > SAMPLES_OF_A_SCAN).collect();
+    let n_wide = facts.beams.iter().filter(|(_, spread)| *spread < WIDE).count();
+    let samples = facts.beams.iter().map(|(samples, _)| samples).sum::<f64>() / n.max(1) as f64;
     let data = format!(
         "a walk takes {} samples, a scan costs as much as {SAMPLES_OF_A_SCAN}; {n_wide} of {n} beams wide",
-        number(facts.samples),
+        number(samples),
     );
     let walk =
         |reason: &str| (Depths::Walk, Decision::kept(RULE, "walks to the light", reason, data.clone()));
@@ -62,9 +63,9 @@ pub fn depths(facts: DepthFacts, prune: bool) -> (Depths, Decision) {
         "walk" => walk("they were asked for"),
         _ if !prune => walk("everything is modeled"),
         _ if n_wide == 0 => walk("light from one direction has sharp shadows"),
-        _ if facts.samples <= SAMPLES_OF_A_SCAN => walk("they are cheaper"),
+        _ if !is_scanned.contains(&true) => walk("they are cheaper"),
         _ if !facts.fits => walk("the device does not hold the depths of a scan"),
-        _ => scan(wide, "wide light is scanned from slab to slab"),
+        _ => scan(is_scanned, "wide light is scanned from slab to slab"),
     }
 }
 
@@ -74,25 +75,24 @@ mod tests {
 
     #[test]
     fn wide_light_is_scanned_where_that_is_cheaper() {
-        let found = |asked, is_closed, samples, spreads: &[f64], fits, prune| {
-            depths(DepthFacts { asked, is_closed, samples, spreads, fits }, prune).0
+        let found = |asked, is_closed, beams: &[(f64, f64)], fits, prune| {
+            depths(DepthFacts { asked, is_closed, beams, fits }, prune).0
         };
-        let mixed = [0.9, 1.0];
-        assert_eq!(found("auto", false, 50.0, &mixed, true, true), Depths::Scan(vec![true, false]));
+        let mixed = [(50.0, 0.9), (50.0, 1.0), (10.0, 0.9)];
+        assert_eq!(found("auto", false, &mixed, true, true), Depths::Scan(vec![true, false, false]));
         for walked in [
-            found("auto", false, 50.0, &mixed, true, false),
-            found("auto", false, 50.0, &mixed[1..], true, true),
-            found("auto", false, 10.0, &mixed, true, true),
-            found("auto", false, 50.0, &mixed, false, true),
-            found("auto", true, 50.0, &mixed, true, true),
-            found("walk", false, 50.0, &mixed, true, true),
-            found("scan", true, 50.0, &mixed, true, true),
+            found("auto", false, &mixed, true, false),
+            found("auto", false, &mixed[1..2], true, true),
+            found("auto", false, &mixed[2..], true, true),
+            found("auto", false, &mixed, false, true),
+            found("auto", true, &mixed, true, true),
+            found("walk", false, &mixed, true, true),
+            found("scan", true, &mixed, true, true),
         ] {
             assert_eq!(walked, Depths::Walk);
         }
-        assert_eq!(found("scan", false, 5.0, &mixed[1..], true, false), Depths::Scan(vec![true]));
-        let facts =
-            DepthFacts { asked: "auto", is_closed: false, samples: 50.0, spreads: &mixed, fits: true };
+        assert_eq!(found("scan", false, &mixed[1..], true, false), Depths::Scan(vec![true; 2]));
+        let facts = DepthFacts { asked: "auto", is_closed: false, beams: &mixed[..2], fits: true };
         let data = depths(facts, true).1.data;
         assert_eq!(data, "a walk takes 50 samples, a scan costs as much as 19; 1 of 2 beams wide");
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use crate::geometry::Mesh;
 use crate::gpu::Format;
 use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType, Report, StageWork, Value};
-use crate::light::Ordinates;
+use crate::light::{Ordinate, Ordinates};
 use crate::planner::{self, DepthFacts, Depths};
 use crate::wire::{AtlasLayout, Beam, Beams, LightField, Medium, Place, Surfaces};
 
@@ -80,13 +80,14 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
     let (is_carried, decision) = planner::beams(medium.albedo, &powers, run.prune);
     let mut decisions = vec![decision];
     let layout = AtlasLayout::new(run.gpu.max_texture_3d() as usize, &medium.lattice, beams.len());
-    let spreads: Vec<f64> =
-        light.ordinates.iter().map(|ordinate| ordinate.region.unwrap_or(ordinate.a0)).collect();
+    let of_beam = |(beam, ordinate): (&Beam, &Ordinate)| {
+        (walk::samples(medium, std::slice::from_ref(beam)), ordinate.region.unwrap_or(ordinate.a0))
+    };
+    let of_beams: Vec<(f64, f64)> = beams.iter().zip(&light.ordinates).map(of_beam).collect();
     let facts = DepthFacts {
         asked: run.params.text("scheme"),
         is_closed: medium.homogeneous.is_some(),
-        samples: walk::samples(medium, &beams),
-        spreads: &spreads,
+        beams: &of_beams,
         fits: scan::fits(run, medium, layout),
     };
     let (depths, decision) = planner::depths(facts, run.prune);
@@ -102,7 +103,7 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
         }
         match &depths {
             Depths::Walk => stages.push(walk::work(medium, &beams)),
-            Depths::Scan(_) => stages.extend(scan::work(medium, beams.len())),
+            Depths::Scan(which) => stages.extend(scan::work(medium, &beams, which, layout.pack)),
         }
         stages.extend(widens.then_some(StageWork {
             stage: "widening",

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use super::super::Run;
+use super::super::{Run, walk};
 use super::layers::Pixel;
 use crate::camera::Camera;
 use crate::graph::{NodeError, Report, StageWork};
@@ -88,7 +88,7 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
     let pixels = (n_pixels * size_of::<Pixel>()) as f64;
     let n_rays = n_pixels as f64 * n_sub * n_sub;
     let of_ray = probe(medium, camera, run.params.f64("step"))?;
-    let of_bending = if is_bent(run) { of_ray.hit * bytes_of_bending(medium) } else { 0.0 };
+    let of_bending = if is_bent(run) { of_ray.hit * bytes_of_bending(medium, skips) } else { 0.0 };
     let moved = |of_lit: f64| {
         n_rays * (of_ray.lit * of_lit + of_ray.void * BYTES_OF_A_VOID_PAIR + of_bending) + pixels
     };
@@ -203,8 +203,10 @@ fn way_out(medium: &Medium) -> f64 {
 
 /// What a ray that meets matter reads for the ways by which light leaves (`shaders/raymarch/environment.wgsl`): walks to
 /// their ends.
-fn bytes_of_bending(medium: &Medium) -> f64 {
-    (STACK_TURNS * STACK_WAYS_AROUND) as f64 * BYTES_OF_A_SAMPLE_PAST * way_out(medium)
+fn bytes_of_bending(medium: &Medium, skips: bool) -> f64 {
+    let samples = if medium.homogeneous.is_some() { walk::SAMPLES_OF_A_SHAPE } else { way_out(medium) };
+    let of_sample = if skips { BYTES_OF_A_SAMPLE_PAST } else { BYTES_OF_A_SAMPLE };
+    (STACK_TURNS * STACK_WAYS_AROUND) as f64 * of_sample * samples
 }
 
 /// What a gathering moves: for each corner of filled blocks the beams, a walk to the eye through half of the

@@ -2,14 +2,14 @@ use glam::DVec3;
 use serde_json::json;
 
 use super::super::oracle::tau_corners_scan;
-use super::{PackParams, SLAB, ScanParams, scan};
-use crate::gpu::Gpu;
+use super::{COLUMN, PackParams, SLAB, ScanParams, scan};
+use crate::gpu::{Gpu, Shader, wgsl_constant};
 use crate::nodes::testing::{
     Filling, Random, Scene, assert_close, assert_layout, filtered, gpu, sun, taus, with_run,
 };
 use crate::nodes::walk::walk;
 use crate::volume::field::Field;
-use crate::wire::{Beam, Beams, Medium};
+use crate::wire::{Beam, Beams, Medium, ShapeTexel};
 
 /// A half float that was cut.
 const HALF: f64 = 1.0 / 1024.0;
@@ -33,15 +33,19 @@ const DIMS: [usize; 3] = [20, 18, 39];
 
 #[test]
 fn scans_are_those_of_the_oracle() {
-    // f32: up to 40 samples are at positions that are 4e-6 cells off, as are the crossings of five planes.
+    // f32: up to 40 samples, and the crossings of five planes, are at positions that are 4e-6 cells off, each of which is
+    // that part of a cell's depth. A device's own filter has 256 steps a cell.
     let Some(gpu) = gpu() else { return };
     let mut random = Random(2);
     for filling in [Filling::Homogeneous, Filling::Random, Filling::Binary] {
         let scene = Scene::new(DIMS, filling, 3.0);
-        let absolute = filtered(gpu, 6e-6) * 60.0 * 3.0 * scene.cell_m;
+        let absolute = filtered(gpu, 4e-6) * 45.0 * 3.0 * scene.cell_m;
         let axes = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+        // Of equal components too.
+        let equal = [DVec3::new(1.0, -1.0, 0.0), DVec3::new(0.0, 1.0, 1.0), DVec3::NEG_ONE];
+        let axes = axes.into_iter().chain(equal.map(|v| v.normalize().as_vec3().as_dvec3()));
         let others = (0..6).map(|_| random.direction().as_vec3().as_dvec3()).collect::<Vec<_>>();
-        for direction in axes.into_iter().chain(others) {
+        for direction in axes.chain(others) {
             let [found, _] = both(gpu, &scene, &[sun(direction, 1.0)], &[true]);
             let expected = tau_corners_scan(&scene.sigma_t, scene.cell_m, direction, SLAB);
             assert!(expected.data.iter().any(|tau| *tau > 3.0));
@@ -54,7 +58,8 @@ fn scans_are_those_of_the_oracle() {
 fn what_no_cell_resolves_is_lost_and_nothing_else() {
     // Cells of independent density, even in 0 ... s: a ray's samples differ from the next ray's by some s/4 each, all of
     // which may be lost of up to 39 - 8 cells: sqrt(31) / 4 = 1.4 cells' depth, three times that as the largest of 15 000
-    // corners. A cubic keeps half of it and more. The mean over corners is kept.
+    // corners. The root of the mean square is s/sqrt(12) a sample, 1.6 cells' depth if all were lost; a cubic keeps more
+    // than half (0.1 to 0.43 cells measured). The mean over corners is kept.
     let Some(gpu) = gpu() else { return };
     let mut random = Random(5);
     for n_beams in [1, 5] {
@@ -82,14 +87,9 @@ fn beams_that_are_not_scanned_are_walked() {
     let lights = [sun(direction, 1.0); 5];
     let is_scanned = [true, false, true, false, false];
     let [found, expected] = both(gpu, &scene, &lights, &is_scanned);
-    // Midpoints of a walk to the first plane stand elsewhere than those of a walk to the side where a way leaves.
-    let whole = tau_corners_scan(&scene.sigma_t, scene.cell_m, direction.as_vec3().as_dvec3(), usize::MAX);
-    for (is_scanned, (found, expected)) in is_scanned.iter().zip(found.iter().zip(&expected)) {
-        let mean = |field: &Field<f64>| field.data.iter().sum::<f64>() / field.data.len() as f64;
-        assert_close("mean", &[mean(found)], &[mean(expected)], 5e-3, 0.0);
-        if !is_scanned {
-            assert_close("walked", &found.data, &whole.data, HALF, 1e-3);
-        }
+    for n in [1, 3, 4] {
+        // Cut to half floats, of the same numbers.
+        assert_close(&format!("{n}"), &found[n].data, &expected[n].data, HALF, 0.0);
     }
     assert!(found[0].data == found[2].data && found[0].data != found[1].data);
 }
@@ -113,7 +113,12 @@ fn no_depth_swings_beyond_its_neighbors() {
 
 #[test]
 fn layouts_are_those_of_the_shaders() {
+    const WHOLE: [(&str, &str); 1] = [("whole", "false")];
     const PACKED: [(&str, &str); 2] = [("pack", "4"), ("format", "rgba16float")];
-    assert_layout::<ScanParams>("principal_propagation/scan.wgsl", "ScanParams", &[]);
+    assert_layout::<ScanParams>("principal_propagation/scan.wgsl", "ScanParams", &WHOLE);
+    assert_layout::<ShapeTexel>("principal_propagation/scan.wgsl", "Shape", &WHOLE);
     assert_layout::<PackParams>("principal_propagation/pack.wgsl", "PackParams", &PACKED);
+    let choices = WHOLE.map(|(name, value)| (name, value.to_owned()));
+    let shader = Shader::expand("principal_propagation/scan.wgsl", &choices).unwrap();
+    assert_eq!(wgsl_constant(&shader, "COLUMN").unwrap(), [COLUMN as f64]);
 }
