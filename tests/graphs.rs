@@ -56,6 +56,19 @@ fn presets_are_without_problems() {
     }
 }
 
+/// Opened and saved, a preset is the file that it was: what is changed by hand shows in its history, and nothing else.
+#[test]
+fn presets_are_as_they_would_be_saved() {
+    for path in presets() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let saved = Document::parse(&text, &folder("graphs")).unwrap().to_json();
+        let mut lines = text.lines().zip(saved.lines()).enumerate();
+        let differs = lines.find(|(_, (is, would_be))| is != would_be);
+        assert_eq!(differs, None, "{path:?}");
+        assert!(text == saved, "{path:?}");
+    }
+}
+
 #[test]
 fn the_graph_of_the_readme_is_without_problems() {
     let text = std::fs::read_to_string(folder("README.md")).unwrap();

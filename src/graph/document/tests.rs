@@ -4,17 +4,11 @@ const READABLE: &str = r#"{
   "tyndall": 1,
   "about": "a \"cloud\" at noon",
   "nodes": {
-    "sun": {
-      "type": "sun",
-      "irradiance": [20, 18.5, 1e-7],
-      "direction": [0.3, -0.4, -0.0]
-    },
+    "sun": { "type": "sun", "irradiance": [20, 18.5, 1e-7], "direction": [0.3, -0.4, -0.0] },
     "medium": {
       "type": "medium",
       "g": 3.0,
-      "emission": {
-        "flame": "flame"
-      },
+      "emission": { "flame": "flame" },
       "nothing": null,
       "albedo": {
         "keys": [
@@ -52,6 +46,20 @@ fn round_trip_keeps_text() {
     assert_eq!(document.base, Path::new("here"));
     assert_eq!(document.layout["sun"], [0.0, -10.5]);
     assert_eq!(document.wires[0].to.port, "lights");
+}
+
+#[test]
+fn what_is_too_wide_has_an_entry_a_line() {
+    let text = |n_letters: usize| {
+        let about = "x".repeat(n_letters);
+        let text =
+            format!(r#"{{"tyndall": 1, "nodes": {{"a": {{"type": "t", "b": "{about}"}}}}, "wires": []}}"#);
+        Document::parse(&text, Path::new("")).unwrap().to_json()
+    };
+    let widest = |text: &str| text.lines().map(str::len).max();
+    // 33 letters, blanks among them, are no x.
+    assert_eq!((widest(&text(87)), text(87).lines().count()), (Some(120), 7));
+    assert_eq!(text(88).lines().count(), 10);
 }
 
 #[test]
@@ -190,22 +198,14 @@ fn truth_graphs_parse_and_round_trip() {
 const GROUPED: &str = r#"{
   "tyndall": 1,
   "nodes": {
-    "sky": {
-      "type": "environment",
-      "mute": true,
-      "scale": 2
-    },
+    "sky": { "type": "environment", "mute": true, "scale": 2 },
     "look": {
       "type": "group",
       "bypass": true,
       "about": "what it is for",
       "nodes": {
-        "a": {
-          "type": "sum"
-        },
-        "b": {
-          "type": "sum"
-        }
+        "a": { "type": "sum" },
+        "b": { "type": "sum" }
       },
       "wires": [
         "a.light -> b.lights"
@@ -217,9 +217,7 @@ const GROUPED: &str = r#"{
           "b.lights"
         ]
       },
-      "outputs": {
-        "light": "b.light"
-      },
+      "outputs": { "light": "b.light" },
       "layout": {
         "a": [0, 0]
       },
@@ -229,11 +227,7 @@ const GROUPED: &str = r#"{
         ]
       },
       "frames": [
-        {
-          "title": "inside",
-          "at": [0, 0],
-          "size": [10, 10]
-        }
+        { "title": "inside", "at": [0, 0], "size": [10, 10] }
       ]
     }
   },
@@ -247,12 +241,7 @@ const GROUPED: &str = r#"{
     ]
   },
   "frames": [
-    {
-      "title": "a \"comment\"",
-      "at": [-10, 0],
-      "size": [200, 100],
-      "color": [0.5, 0, 1]
-    }
+    { "title": "a \"comment\"", "at": [-10, 0], "size": [200, 100], "color": [0.5, 0, 1] }
   ]
 }
 "#;

@@ -1,7 +1,8 @@
-//! JSON as people like to read and diff it: two spaces, one entry a line, but a vector and a key on one.
+//! JSON as people like to read and diff it: two spaces, one entry a line, but a vector, a key, and what is as short as
+//! most nodes are on one.
 //!
-//! serde_json's own pretty printer sets every component of a vector on a line of its own. Tested in the
-//! tests of the document.
+//! serde_json's own pretty printer sets every component of a vector on a line of its own, and a node of ten parameters on
+//! twelve. Tested in the tests of the document, and by the presets, which are as they would be saved.
 
 use serde_json::{Map, Value as Json};
 
@@ -72,6 +73,9 @@ fn vector(values: &[f64]) -> Json {
     Json::Array(values.iter().map(|x| Json::Number(json_number(*x))).collect())
 }
 
+/// Letters that a line has at most which holds several entries, but for the comma.
+const WIDTH: usize = 120;
+
 /// The text of `json` with a line end.
 pub fn pretty(json: &Json) -> String {
     let mut text = String::new();
@@ -95,12 +99,35 @@ fn write(json: &Json, depth: usize, text: &mut String) {
             text.push(']');
         }
         Json::Object(fields) if !fields.is_empty() => {
+            let before = text.len() - text.rfind('\n').map_or(0, |end| end + 1);
+            if let Some(line) = on_a_line(fields).filter(|line| before + line.len() <= WIDTH) {
+                *text += &line;
+                return;
+            }
             let entries =
                 fields.iter().map(|(name, value)| (format!("{}: ", Json::from(name.as_str())), value));
             write_lines(['{', '}'], entries, depth, text);
         }
         other => *text += &other.to_string(),
     }
+}
+
+/// `{ "type": "sun", "direction": [0, -1, 0] }`. `None` for what holds more than vectors, and for vectors alone: places
+/// of nodes are read one below the other.
+fn on_a_line(fields: &Map<String, Json>) -> Option<String> {
+    let is_flat = |json: &Json| match json {
+        Json::Array(items) => is_short(items),
+        other => !other.is_object(),
+    };
+    let is_record = fields.values().all(is_flat) && !fields.values().all(Json::is_array);
+    is_record.then(|| {
+        let entries = fields.iter().map(|(name, value)| {
+            let mut text = format!("{}: ", Json::from(name.as_str()));
+            write(value, 0, &mut text);
+            text
+        });
+        format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
+    })
 }
 
 /// A vector, or a key of a frame and a number or a vector.
