@@ -16,6 +16,7 @@
 mod action;
 mod app;
 mod canvas;
+mod dialog;
 mod inspector;
 mod look;
 mod panels;

@@ -90,6 +90,9 @@ impl MeshError {
     }
 }
 
+/// How the names of meshes end, as [`read`] has it.
+pub const ENDINGS: &[&str] = &["obj", "gltf", "glb"];
+
 /// Reads a mesh by its file's ending: .obj, .gltf or .glb.
 ///
 /// # Errors

@@ -195,6 +195,11 @@ impl ImageError {
 pub use colormap::Colormap;
 pub use table::Table;
 
+/// How the names of pictures end that are written, as [`Format::of`] has it.
+pub const ENDINGS: &[&str] = &["exr", "png"];
+/// How the names of environment maps usually end; [`read_environment`] goes by content.
+pub const ENVIRONMENT_ENDINGS: &[&str] = &["exr", "hdr"];
+
 /// What a picture is written as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {

@@ -65,6 +65,9 @@ impl Table {
     }
 }
 
+/// How the names of tables end.
+pub const ENDINGS: &[&str] = &["csv"];
+
 /// Refuses a name that does not end in `.csv`, case ignored.
 ///
 /// # Errors

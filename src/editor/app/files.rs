@@ -3,13 +3,18 @@
 use std::path::{Path, PathBuf};
 
 use egui::{Ui, ViewportCommand};
-use egui_file_dialog::{DialogState, FileDialog, Filter};
+use egui_file_dialog::{DialogState, FileDialog};
 
 use super::App;
+use crate::editor::dialog;
 use crate::editor::panels::unsaved::{self, Answer};
 use crate::editor::{Project, Selection, Statuses};
 use crate::graph::Document;
 use crate::template;
+use crate::volume::vdb;
+
+/// How the names of graphs end.
+const GRAPH_ENDINGS: &[&str] = &["json"];
 
 /// What a dialog is for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,14 +56,6 @@ pub struct Files {
     title: String,
 }
 
-fn dialog(title: &str, folder: Option<&Path>) -> FileDialog {
-    let dialog = FileDialog::new().title(title).anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]);
-    match folder.filter(|folder| folder.is_dir()) {
-        Some(folder) => dialog.initial_directory(folder.to_owned()),
-        None => dialog,
-    }
-}
-
 impl Files {
     /// Whether the user has agreed to the end of the window.
     pub fn is_closing(&self) -> bool {
@@ -77,34 +74,23 @@ impl Files {
 
     /// Asks for a graph, to open or to insert.
     pub fn ask_graph(&mut self, folder: Option<&Path>, inserts: bool) {
-        let is_graph = |path: &Path| path.extension().is_some_and(|ending| ending == "json");
         let (title, purpose) = match inserts {
             true => ("Insert a graph as a group", Purpose::Insert),
             false => ("Open a graph", Purpose::Graph),
         };
-        let mut dialog = dialog(title, folder)
-            .add_file_filter("Graphs", Filter::new(is_graph))
-            .default_file_filter("Graphs");
-        dialog.pick_file();
-        self.dialog = Some((dialog, purpose));
+        self.dialog = Some((dialog::to_open(title, folder, GRAPH_ENDINGS), purpose));
     }
 
     /// Asks for a volume.
     pub fn ask_volume(&mut self, folder: Option<&Path>) {
-        let is_volume = |path: &Path| path.extension().is_some_and(|ending| ending == "vdb");
-        let mut dialog = dialog("Open a VDB", folder)
-            .add_file_filter("OpenVDB", Filter::new(is_volume))
-            .default_file_filter("OpenVDB");
-        dialog.pick_file();
-        self.dialog = Some((dialog, Purpose::Volume));
+        self.dialog = Some((dialog::to_open("Open a VDB", folder, vdb::ENDINGS), Purpose::Volume));
     }
 
     /// Asks where to save.
     pub fn ask_save(&mut self, folder: Option<&Path>, project: &Project) {
         let name = project.file().and_then(Path::file_name).map(|name| name.to_string_lossy().into_owned());
-        let mut dialog =
-            dialog("Save the graph", folder).default_file_name(&name.unwrap_or("graph.json".to_owned()));
-        dialog.save_file();
+        let name = name.unwrap_or("graph.json".to_owned());
+        let dialog = dialog::to_save("Save the graph", folder, &name, GRAPH_ENDINGS);
         self.dialog = Some((dialog, Purpose::Save));
     }
 }
@@ -215,9 +201,9 @@ impl App {
     /// Asks where to write a group as a graph of its own.
     pub(super) fn ask_preset(&mut self, name: &str) {
         let Some(inside) = self.project.document().inside(name).cloned() else { return };
-        let mut dialog = dialog("Save the group as a preset", self.folder().as_deref())
-            .default_file_name(&format!("{}.json", name.replace('/', "_")));
-        dialog.save_file();
+        let file = format!("{}.json", name.replace('/', "_"));
+        let folder = self.folder();
+        let dialog = dialog::to_save("Save the group as a preset", folder.as_deref(), &file, GRAPH_ENDINGS);
         let base = self.project.document().base.clone();
         self.files.preset = Some(template::absolute(Document { base, ..inside }));
         self.files.dialog = Some((dialog, Purpose::Preset));
@@ -299,7 +285,7 @@ impl App {
             (self.files.dialog, self.files.after_save) = (None, None);
             return;
         }
-        dialog.update(ui.ctx());
+        dialog::update(dialog, ui);
         let purpose = *purpose;
         if let Some(path) = dialog.take_picked() {
             self.files.dialog = None;

@@ -8,6 +8,7 @@ use egui_file_dialog::{DialogState, FileDialog};
 
 use super::number::{entry_shown, has_room, named};
 use super::slot::Slot;
+use crate::editor::dialog;
 use crate::graph::ParamKind;
 use crate::graph::spec::Default;
 
@@ -57,17 +58,15 @@ fn end_of(path: &str, fits: impl Fn(&str) -> bool) -> String {
 
 fn open(ui: &Ui, slot: &Slot, current: &str) {
     let full = slot.document().base.join(current);
-    let folder = full.parent().filter(|folder| folder.is_dir()).map(Path::to_owned);
-    let mut dialog = FileDialog::new()
-        .title(&format!("Choose {}", slot.name()))
-        .anchor(egui::Align2::CENTER_CENTER, [0.0, 0.0]);
-    if let Some(folder) = folder.and_then(|folder| std::path::absolute(folder).ok()) {
-        dialog = dialog.initial_directory(folder);
-    }
-    match slot.spec.kind {
-        ParamKind::OutPath => dialog.save_file(),
-        _ => dialog.pick_file(),
-    }
+    let folder = full.parent().and_then(|folder| std::path::absolute(folder).ok());
+    let (title, folder, endings) = (format!("Choose {}", slot.name()), folder.as_deref(), slot.spec.endings);
+    let dialog = match slot.spec.kind {
+        ParamKind::OutPath => {
+            let name = full.file_name().unwrap_or_default().to_string_lossy();
+            dialog::to_save(&title, folder, &name, endings)
+        }
+        _ => dialog::to_open(&title, folder, endings),
+    };
     let picker = Picker { dialog, wanted_by: slot.name(), picked: None };
     ui.data_mut(|data| data.insert_temp(egui::Id::new("path picker"), Arc::new(Mutex::new(picker))));
 }
@@ -96,7 +95,7 @@ pub fn dialog(ui: &mut Ui) {
         ui.data_mut(|data| data.remove::<Shared>(egui::Id::new("path picker")));
         return;
     }
-    picker.dialog.update(ui.ctx());
+    dialog::update(&mut picker.dialog, ui);
     if let Some(path) = picker.dialog.take_picked() {
         picker.picked = Some(path);
         ui.ctx().request_repaint();

@@ -24,6 +24,8 @@ pub struct ParamSpec {
     pub soft: Option<(f64, f64)>,
     /// What is allowed, for each component.
     pub hard: Limits,
+    /// Of a file: how its name may end, lower case without the dot; empty for anything.
+    pub endings: &'static [&'static str],
     /// What the frame does to it.
     pub timing: Timing,
     /// What its user reads.
@@ -120,7 +122,7 @@ pub struct Limits {
 impl ParamSpec {
     const fn new(name: &'static str, kind: ParamKind, default: Default) -> Self {
         let timing = Timing::Own;
-        Self { name, kind, unit: "", default, soft: None, hard: Limits::NONE, timing, doc: "" }
+        Self { name, kind, unit: "", default, soft: None, hard: Limits::NONE, endings: &[], timing, doc: "" }
     }
 
     /// A finite number.
@@ -236,6 +238,12 @@ impl ParamSpec {
     pub const fn open(mut self) -> Self {
         self.hard.open_min = true;
         self.hard.open_max = true;
+        self
+    }
+
+    /// How the file's name may end, what is usual first.
+    pub const fn endings(mut self, endings: &'static [&'static str]) -> Self {
+        self.endings = endings;
         self
     }
 

@@ -25,7 +25,10 @@ static SPEC: NodeSpec = NodeSpec {
         "for light_decomposition and, to be seen, raymarch",
     )],
     params: &[
-        ParamSpec::path("path").or_null().doc("A lat-long picture; null for a constant radiance."),
+        ParamSpec::path("path")
+            .or_null()
+            .endings(image::ENVIRONMENT_ENDINGS)
+            .doc("A lat-long picture; null for a constant radiance."),
         ParamSpec::rgb("radiance", [1.0; 3])
             .unit("W/(m2 sr)")
             .between(0.0, BRIGHTEST)

@@ -19,7 +19,7 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[],
     outputs: &[PortSpec::new("volume", PortType::Volume, "all grids of the file")],
     params: &[
-        ParamSpec::path("path").doc("A .vdb file, a pattern with ####, or a folder."),
+        ParamSpec::path("path").endings(vdb::ENDINGS).doc("A .vdb file, a pattern with ####, or a folder."),
         ParamSpec::int("frame", 0)
             .or_null()
             .timed(Timing::Frame)

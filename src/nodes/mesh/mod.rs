@@ -22,7 +22,7 @@ static SPEC: NodeSpec = NodeSpec {
         "the triangles, for the surfaces of solvers and raymarch",
     )],
     params: &[
-        ParamSpec::path("path").doc("A .obj, .gltf or .glb file."),
+        ParamSpec::path("path").endings(geometry::ENDINGS).doc("A .obj, .gltf or .glb file."),
         ParamSpec::rgb("albedo", [0.5; 3])
             .between(0.0, 1.0)
             .doc("Share of the light that comes back, linear Rec. 709."),

@@ -17,6 +17,7 @@ static SPEC: NodeSpec = NodeSpec {
     inputs: &[PortSpec::new("image", PortType::Image, "the picture")],
     outputs: &[PortSpec::new("image", PortType::Image, "the same picture")],
     params: &[ParamSpec::out_path("path", "out/picture.exr")
+        .endings(image::ENDINGS)
         .doc("Where to write, .exr or .png; relative to the graph file.")],
 };
 

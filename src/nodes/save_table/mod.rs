@@ -15,9 +15,9 @@ static SPEC: NodeSpec = NodeSpec {
           numbers read back to the same bits.",
     inputs: &[PortSpec::new("table", PortType::Table, "the table")],
     outputs: &[PortSpec::new("table", PortType::Table, "the same table")],
-    params: &[
-        ParamSpec::out_path("path", "out/table.csv").doc("Where to write, .csv; relative to the graph file.")
-    ],
+    params: &[ParamSpec::out_path("path", "out/table.csv")
+        .endings(table::ENDINGS)
+        .doc("Where to write, .csv; relative to the graph file.")],
 };
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {

@@ -35,6 +35,9 @@ pub use write::{WriteCompression, WriteOptions, to_bytes, write};
 use std::fmt;
 use std::path::PathBuf;
 
+/// How the names of files end.
+pub const ENDINGS: &[&str] = &["vdb"];
+
 /// Why a file or a grid cannot be read or written.
 #[derive(Debug, thiserror::Error)]
 pub enum VdbError {
