@@ -35,8 +35,8 @@ pub enum Action {
     FitPicture,
     /// A pixel for a pixel.
     ActualSize,
-    /// Looks at the whole medium.
-    FrameMedium,
+    /// Looks at the whole volume.
+    FrameVolume,
     /// The histogram of the picture.
     Histogram,
     /// A plane through a field.
@@ -158,7 +158,7 @@ pub const ACTIONS: &[ActionSpec] = &[
     spec(Action::OtherPart, "View", "To canvas or inspector", key(NONE, Key::F6)),
     spec(Action::FitPicture, "View", "Fit the picture", key(COMMAND, Key::Num0)).apart(),
     spec(Action::ActualSize, "View", "Picture at 1:1", key(COMMAND, Key::Num1)),
-    spec(Action::FrameMedium, "View", "Frame the medium", key(COMMAND, Key::Num2)),
+    spec(Action::FrameVolume, "View", "Frame the volume", key(COMMAND, Key::Num2)),
     spec(Action::Slice, "View", "Slice plane", key(COMMAND, Key::Num3)),
     spec(Action::Histogram, "View", "Histogram", key(COMMAND, Key::H)),
     spec(Action::StoreA, "View", "Store picture A", key(COMMAND, Key::F1)),

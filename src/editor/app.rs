@@ -10,15 +10,16 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use egui::{CentralPanel, Panel, TextureHandle, Ui};
+use glam::DVec3;
 
 use super::action::{self, Action};
 use super::canvas::Canvas;
-use super::look::{self, Look};
+use super::look::{self, Look, Matter};
 use super::panels::palette::Palette;
 use super::panels::start::Start;
 use super::panels::status_bar::{self, Figures};
 use super::panels::toasts::Toasts;
-use super::panels::{Possible, menu};
+use super::panels::{Marks, Possible, menu};
 use super::player::Player;
 use super::presets::{self, Preset};
 use super::settings::{Settings, ThemeChoice};
@@ -28,7 +29,6 @@ use crate::gpu::AdapterChoice;
 use crate::graph::{Document, flatten};
 use crate::nodes::catalog;
 use crate::template;
-use crate::volume::Lattice;
 use files::Files;
 use safety::Safety;
 
@@ -61,7 +61,8 @@ pub struct App {
     pictures: HashMap<String, Picture>,
     /// Small pictures of what nodes give, by name.
     thumbnails: HashMap<String, TextureHandle>,
-    lattice: Option<Lattice>,
+    /// What is shown fills this box, in meters.
+    bounds: Option<(Matter, [DVec3; 2])>,
     asked: Option<solving::Asked>,
     /// The revision that was last looked through for frames.
     spanned: Option<u64>,
@@ -125,7 +126,7 @@ impl App {
             flat: None,
             pictures: HashMap::new(),
             thumbnails: HashMap::new(),
-            lattice: None,
+            bounds: None,
             asked: None,
             spanned: None,
             pictures_seen: PicturesSeen::default(),
@@ -166,7 +167,7 @@ impl App {
             Action::ActualSize => self.viewport.one_to_one(context),
             Action::Histogram => self.viewport.toggle_histogram(),
             Action::Slice => self.viewport.slice.toggle(),
-            Action::FrameMedium => {
+            Action::FrameVolume => {
                 let framed = self.with_scene(|viewport, project, scene| viewport.frame(project, scene));
                 framed.unwrap_or_else(|why| self.toasts.say(why));
             }
@@ -219,6 +220,16 @@ impl App {
         }
     }
 
+    fn marks(&self) -> Marks {
+        Marks {
+            snaps: self.canvas.snaps(),
+            minimap: self.canvas.shows_minimap(),
+            histogram: self.viewport.shows_histogram(),
+            slice: self.viewport.slice.is_on(),
+            theme: self.settings.theme,
+        }
+    }
+
     fn has_frames(&self) -> bool {
         self.is_open && self.player.has_frames()
     }
@@ -249,7 +260,7 @@ impl App {
             look: self.look.as_ref(),
             pictures: &self.pictures,
             camera,
-            bounds: self.lattice.as_ref().map(solving::bounds),
+            bounds: self.bounds(),
             problem: self.problem(),
             is_busy: self.figures.running.is_some() || self.figures.adapter.is_none(),
             flat: flat.as_deref(),
@@ -293,7 +304,8 @@ impl eframe::App for App {
         self.look = if self.is_open { look::look(&self.flat(), self.chosen.as_deref()) } else { None };
         self.over(ui);
         let title = self.title();
-        let asked = Panel::top("menu").show(ui, |ui| menu::show(ui, self.possible(), &title)).inner;
+        let asked =
+            Panel::top("menu").show(ui, |ui| menu::show(ui, self.possible(), self.marks(), &title)).inner;
         asked.into_iter().for_each(|action| self.perform(&context, action));
         self.offer(ui);
         let retries = Panel::bottom("status").show(ui, |ui| status_bar::show(ui, &self.figures)).inner;

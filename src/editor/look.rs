@@ -23,8 +23,17 @@ pub struct Look {
     pub tone: Option<String>,
     /// The camera above it.
     pub camera: Option<String>,
-    /// The medium above it.
-    pub medium: Option<String>,
+    /// What of it fills space.
+    pub matter: Option<Matter>,
+}
+
+/// What fills the space that a picture shows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Matter {
+    /// Who gives it: a medium, else a volume.
+    pub output: End,
+    /// Of a volume, the grid that is shown.
+    pub grid: Option<String>,
 }
 
 const CAMERA: &str = "camera";
@@ -46,14 +55,39 @@ pub fn look(document: &Document, chosen: Option<&str>) -> Option<Look> {
         last(true).or_else(through_camera).or_else(|| last(false))
     })?;
     let above = above(document, &chosen.1.node);
-    let of_kind = |kind: &str| above.iter().find(|name| document.nodes[**name].type_id == kind);
+    let camera = above.iter().find(|name| document.nodes[**name].type_id == CAMERA);
     Some(Look {
-        camera: of_kind(CAMERA).map(|name| (*name).to_owned()),
-        medium: of_kind("medium").map(|name| (*name).to_owned()),
+        camera: camera.map(|name| (*name).to_owned()),
+        matter: matter(document, &above),
         chosen: chosen.0,
         source: chosen.1,
         tone: chosen.2,
     })
+}
+
+/// The nearest medium that these nodes read, else the nearest volume.
+fn matter(document: &Document, above: &[&str]) -> Option<Matter> {
+    let read = |kind: PortType| {
+        let wires =
+            above.iter().flat_map(|name| document.wires.iter().filter(move |wire| wire.to.node == *name));
+        let mut wires = wires.filter(move |wire| kind_of(document, &wire.from) == Some(kind));
+        wires.next()
+    };
+    if let Some(wire) = read(PortType::Medium) {
+        return Some(Matter { output: wire.from.clone(), grid: None });
+    }
+    let wire = read(PortType::Volume)?;
+    let reader = document.nodes.get(&wire.to.node)?;
+    let params = catalog().find(&reader.type_id)?.params;
+    let spec = params.iter().find(|param| matches!(param.kind, ParamKind::Grid))?;
+    let grid = reader.params.get(spec.name).cloned().or_else(|| spec.default_json())?;
+    Some(Matter { output: wire.from.clone(), grid: Some(grid.as_str()?.to_owned()) })
+}
+
+/// What an output gives.
+fn kind_of(document: &Document, output: &End) -> Option<PortType> {
+    let spec = catalog().find(&document.nodes.get(&output.node)?.type_id)?;
+    spec.outputs.iter().find(|port| port.name == output.port).map(|port| port.kind)
 }
 
 /// The node, who gives its radiance, and whether it maps tones.
@@ -197,7 +231,9 @@ mod tests {
             let look = look(&document, chosen).unwrap();
             assert_eq!((look.chosen.as_str(), look.source.to_string().as_str()), (is, "march.image"));
             assert_eq!(look.tone.as_deref(), Some("tone"));
-            assert_eq!((look.camera.as_deref(), look.medium.as_deref()), (Some("camera"), Some("medium")));
+            assert_eq!(look.camera.as_deref(), Some("camera"));
+            let matter = look.matter.as_ref().unwrap();
+            assert_eq!((matter.output.to_string().as_str(), matter.grid.as_ref()), ("medium.medium", None));
             let shown = tone(&document, &look, Tone::default());
             assert_eq!(shown, Tone { exposure_ev: 1.5, curve: Curve::Aces });
         }
@@ -216,9 +252,14 @@ mod tests {
             "seen": {"type": "transfer_function"}, "bars": {"type": "histogram"}, "save": {"type": "save_image"}},
             "wires": ["cloud.volume -> seen.volume", "cloud.volume -> bars.volume", "camera.camera -> seen.camera",
             "bars.image -> save.image"]}"#;
-        let document = Document::parse(text, Path::new("")).unwrap();
+        let mut document = Document::parse(text, Path::new("")).unwrap();
         let source = |document: &Document| look(document, None).unwrap().source.to_string();
         assert_eq!(source(&document), "seen.image");
+        let matter = |document: &Document| look(document, None).unwrap().matter.unwrap();
+        let shown = |grid: &str| Matter { output: End::new("cloud", "volume"), grid: Some(grid.to_owned()) };
+        assert_eq!(matter(&document), shown("density"));
+        document.set(catalog(), "seen.grid", "heat").unwrap();
+        assert_eq!(matter(&document), shown("heat"));
         let mut blind = document.clone();
         blind.wires.retain(|wire| wire.from.node != "camera");
         assert_eq!(source(&blind), "bars.image");

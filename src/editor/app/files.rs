@@ -193,9 +193,11 @@ impl App {
         self.viewport.fit();
         self.pictures.clear();
         self.thumbnails.clear();
-        (self.chosen, self.look, self.lattice) = (None, None, None);
+        (self.chosen, self.look, self.bounds) = (None, None, None);
         (self.asked, self.spanned, self.flat) = (None, None, None);
         self.player = Default::default();
+        // Of a graph that is gone; device and cache are the same.
+        (self.figures.picture_ms, self.figures.preview_ms) = (None, None);
     }
 
     /// Asks where to write a group as a graph of its own.

@@ -1,18 +1,18 @@
 //! What is asked of the worker, and what its answers change.
 
-use glam::DVec3;
+use glam::{DMat4, DVec3};
 
 use super::{App, PicturesSeen};
 use crate::editor::NodeState;
-use crate::editor::look::{self, Look};
+use crate::editor::look::{self, Look, Matter};
 use crate::editor::player::{Broken, LOADER};
 use crate::editor::viewport::{self, Picture, SLICE, Tone};
 use crate::editor::worker::{Ask, Reply, Solved};
 use crate::gpu::OUT_OF_MEMORY;
-use crate::graph::{Document, Event, Node, PortType, Wire};
+use crate::graph::{Document, Event, Node, PortType, Value, Wire};
 use crate::image::tonemap::Curve;
 use crate::image::{Image, Table};
-use crate::volume::Lattice;
+use crate::volume::Volume;
 use crate::wire::Medium;
 
 /// The last request.
@@ -89,7 +89,8 @@ impl App {
         let mut rest = look::harmless(&document);
         // The node that is looked at comes first among the rest, and its tone_map tells its own errors.
         rest.sort_by_key(|name| look.as_ref().is_none_or(|look| look.tone.as_ref() != Some(name)));
-        let mut wanted: Vec<String> = look.iter().filter_map(|look| look.medium.clone()).collect();
+        let matter = look.iter().filter_map(|look| look.matter.as_ref());
+        let mut wanted: Vec<String> = matter.map(|matter| matter.output.node.clone()).collect();
         self.figures.progress = [0, rest.len()];
         let mut with_slice = document.clone();
         let beside = match self.viewport.slice.add_to(&mut with_slice) {
@@ -141,7 +142,7 @@ impl App {
         self.figures.n_failed = failed.count();
     }
 
-    fn take(&mut self, context: &egui::Context, solved: Solved, number: u64) {
+    pub(super) fn take(&mut self, context: &egui::Context, solved: Solved, number: u64) {
         let Solved { level, frame, values, costs, wall_ms, cache_bytes, gpu_bytes } = solved;
         let is_last = self.asked.as_ref().is_none_or(|asked| asked.number == number);
         let (of_slice, values): (Vec<_>, Vec<_>) = values.into_iter().partition(|(name, ..)| name == SLICE);
@@ -150,11 +151,12 @@ impl App {
         }
         (self.figures.cache_bytes, self.figures.gpu_bytes) = (cache_bytes, gpu_bytes);
         let source = self.look.as_ref().map(|look| look.source.clone());
+        let is_source =
+            |name: &str, port: &str| source.as_ref().is_some_and(|end| end.node == name && end.port == port);
+        let has_picture = values.iter().any(|(name, port, _)| is_source(name, port));
         for (name, port, value) in values {
             if value.kind == PortType::Image {
-                let is_looked_at =
-                    source.as_ref().is_some_and(|source| source.node == name && source.port == port);
-                if is_looked_at {
+                if is_source(&name, port) {
                     self.figures.trouble = None;
                     let count = self.pictures_seen.count + 1;
                     self.pictures_seen = PicturesSeen { count, is_whole: level.is_full() };
@@ -175,9 +177,13 @@ impl App {
                 }
                 self.small_picture(context, &name, value.get());
                 self.pictures.insert(name, Picture { value, level });
-            } else if value.kind == PortType::Medium && (level.is_full() || self.lattice.is_none()) {
-                // A coarse one fills the same box, but for a cell. Its lattice alone: the medium's fields are the cache's to keep or drop.
-                self.lattice = Some(value.get::<Medium>().lattice.clone());
+            } else if let Some(matter) = self.matter_of(&name, port)
+                && (level.is_full() || self.bounds().is_none())
+                // What a picture shows has been decoded for it; the window must not wait for that.
+                && (value.kind == PortType::Medium || has_picture)
+            {
+                // Coarse, it fills the same box, but for a cell. Its box alone: the fields are the cache's to keep or drop.
+                self.bounds = box_of(&value, matter.grid.as_deref()).map(|bounds| (matter, bounds));
             }
         }
         if level.is_full() {
@@ -185,6 +191,18 @@ impl App {
                 self.statuses.entry(cost.name).or_default().gpu_ms = cost.gpu_ms;
             }
         }
+    }
+
+    /// What is shown, if this output gives it.
+    fn matter_of(&self, name: &str, port: &str) -> Option<Matter> {
+        let matter = self.look.as_ref()?.matter.as_ref()?;
+        (matter.output.node == name && matter.output.port == port).then(|| matter.clone())
+    }
+
+    /// The box of what is shown now, in meters.
+    pub(super) fn bounds(&self) -> Option<[DVec3; 2]> {
+        let (of, bounds) = self.bounds.as_ref()?;
+        (self.look.as_ref()?.matter.as_ref()? == of).then_some(*bounds)
     }
 
     /// The picture of a node, as small as the canvas shows it.
@@ -301,12 +319,22 @@ impl App {
     }
 }
 
-/// The box around the occupied cells, in meters.
-pub fn bounds(lattice: &Lattice) -> [DVec3; 2] {
-    let high = DVec3::from_array(lattice.occupied.map(|n| n as f64 - 0.5));
+/// The box around what a medium or a volume's grid fills, in meters; `None` where there is no such grid.
+fn box_of(value: &Value, grid: Option<&str>) -> Option<[DVec3; 2]> {
+    if value.kind == PortType::Medium {
+        let lattice = &value.get::<Medium>().lattice;
+        return Some(box_around(lattice.occupied, lattice.world_from_index));
+    }
+    let (dense, _) = value.get::<Volume>().signed_grid(grid?).ok()?;
+    Some(box_around(dense.dims, dense.world_from_index))
+}
+
+/// The box around so many cells, in meters.
+fn box_around(n_cells: [usize; 3], world_from_index: DMat4) -> [DVec3; 2] {
+    let high = DVec3::from_array(n_cells.map(|n| n as f64 - 0.5));
     let corner = |n: usize| {
         let pick = |axis: usize| if n >> axis & 1 == 0 { -0.5 } else { high[axis] };
-        lattice.world_from_index.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
+        world_from_index.transform_point3(DVec3::new(pick(0), pick(1), pick(2)))
     };
     let first = corner(0);
     (1..8).map(corner).fold([first; 2], |[low, high], corner| [low.min(corner), high.max(corner)])

@@ -233,6 +233,16 @@ impl Canvas {
         self.is_focused
     }
 
+    /// Whether moved nodes stand on the grid.
+    pub fn snaps(&self) -> bool {
+        self.snaps
+    }
+
+    /// Whether the map is shown in the corner, where there is something out of sight.
+    pub fn shows_minimap(&self) -> bool {
+        !self.hides_minimap
+    }
+
     /// Brings the keyboard to the selected node, or to the first, which is then selected.
     pub fn take_keyboard(&mut self, selection: &mut Selection) {
         let inner =

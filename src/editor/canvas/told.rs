@@ -1,6 +1,6 @@
 //! What a node tells in words: its state, what it cost, what was left out. Tested by the texts.
 
-use crate::editor::panels::status_bar::time;
+use crate::editor::panels::status_bar::{size, time};
 use crate::editor::{NodeState, NodeStatus};
 use crate::graph::Decision;
 
@@ -48,13 +48,7 @@ fn longest(status: &NodeStatus) -> String {
 
 /// "3.4 MiB"; nothing of nothing.
 fn bytes(status: &NodeStatus) -> String {
-    let units = ["B", "KiB", "MiB", "GiB", "TiB"];
-    let (mut size, mut unit) = (status.bytes as f64, 0);
-    while size >= 1000.0 && unit + 1 < units.len() {
-        (size, unit) = (size / 1024.0, unit + 1);
-    }
-    let digits = usize::from(unit > 0 && size < 10.0);
-    if status.bytes > 0 { format!("{size:.digits$} {}", units[unit]) } else { String::new() }
+    if status.bytes > 0 { size(status.bytes) } else { String::new() }
 }
 
 /// What the scene did not require.

@@ -3,7 +3,7 @@
 use egui::{RichText, Ui};
 
 use super::number::named;
-use crate::editor::panels::status_bar::time;
+use crate::editor::panels::status_bar::{size, time};
 use crate::editor::{NodeState, NodeStatus, Project};
 use crate::graph::{Decision, Document, End, NodeSpec, PortSpec, Side, Wire};
 use crate::nodes::catalog;
@@ -120,7 +120,10 @@ fn empty(ui: &mut Ui, side: Side, port: &PortSpec) {
     match (side, port.absent) {
         (Side::Input, Some(meaning)) => drop(ui.weak(format!("empty: {meaning}"))),
         (Side::Input, None) => {
-            drop(ui.colored_label(ui.visuals().error_fg_color, format!("empty: wire a {} to it", port.kind)));
+            drop(ui.colored_label(
+                ui.visuals().error_fg_color,
+                format!("empty: wire an output of type {} to it", port.kind),
+            ));
         }
         (Side::Output, _) => drop(ui.weak("read by nothing")),
     }
@@ -150,16 +153,17 @@ pub fn run(ui: &mut Ui, status: &NodeStatus) {
 /// As far as it is known: what was found in the cache under a new name took its time under another.
 fn cost(status: &NodeStatus) -> String {
     let cached = if status.cached { ", from the cache" } else { "" };
-    let mib = status.bytes as f64 / f64::from(1 << 20);
+    let size = size(status.bytes);
     let is_known = |ms: f64| ms >= 0.05;
     let times = match [status.cpu_ms, status.gpu_ms] {
-        [cpu_ms, gpu_ms] if is_known(gpu_ms) => {
+        [cpu_ms, gpu_ms] if is_known(gpu_ms) && cpu_ms >= gpu_ms => {
             format!("{}, of these {} on the GPU; ", time(cpu_ms), time(gpu_ms))
         }
+        [_, gpu_ms] if is_known(gpu_ms) => format!("{} on the GPU; ", time(gpu_ms)),
         [cpu_ms, _] if is_known(cpu_ms) => format!("{}; ", time(cpu_ms)),
         _ => String::new(),
     };
-    format!("{times}{mib:.1} MiB{cached}")
+    format!("{times}{size}{cached}")
 }
 
 fn told(ui: &mut Ui, decision: &Decision) {
@@ -185,6 +189,10 @@ mod tests {
             "4.5 s, of these 4.1 s on the GPU; 3.0 MiB, from the cache"
         );
         assert_eq!(cost_of(12.0, 0.0, false), "12 ms; 3.0 MiB");
+        // Of a preview, which the clock of the node has not seen.
+        assert_eq!(cost_of(0.0, 30.0, true), "30 ms on the GPU; 3.0 MiB, from the cache");
         assert_eq!(cost_of(0.0, 0.0, true), "3.0 MiB, from the cache");
+        // A lamp is not of 0.0 MiB.
+        assert_eq!(cost(&NodeStatus { bytes: 80, ..NodeStatus::default() }), "80 B");
     }
 }

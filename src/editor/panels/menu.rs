@@ -1,12 +1,12 @@
 //! The menu bar, made from the table of actions.
 
-use egui::{Button, MenuBar, ScrollArea, Ui};
+use egui::{Button, Color32, MenuBar, RichText, ScrollArea, Ui, WidgetInfo, WidgetType};
 
-use super::{Possible, key_text};
-use crate::editor::action::{ACTIONS, Action, MENUS};
+use super::{Marks, Possible, key_text};
+use crate::editor::action::{ACTIONS, Action, ActionSpec, MENUS};
 
 /// Draws the bar; `title` stands in its middle.
-pub fn show(ui: &mut Ui, possible: Possible, title: &str) -> Vec<Action> {
+pub fn show(ui: &mut Ui, possible: Possible, marks: Marks, title: &str) -> Vec<Action> {
     let mut asked = Vec::new();
     MenuBar::new().ui(ui, |ui| {
         for menu in MENUS {
@@ -15,12 +15,14 @@ pub fn show(ui: &mut Ui, possible: Possible, title: &str) -> Vec<Action> {
                 // In a low window the longest menu has more lines than it.
                 let height = ui.ctx().content_rect().bottom() - ui.cursor().top() - 16.0;
                 ScrollArea::vertical().max_height(height).min_scrolled_height(height).show(ui, |ui| {
-                    for spec in ACTIONS.iter().filter(|spec| spec.menu == menu) {
+                    let lines = || ACTIONS.iter().filter(|spec| spec.menu == menu);
+                    // Where one line has a mark, all leave room for it.
+                    let has_marks = lines().any(|spec| marks.is_on(spec.action).is_some());
+                    for spec in lines() {
                         if spec.is_apart {
                             ui.separator();
                         }
-                        let button = Button::new(spec.label).shortcut_text(key_text(ui.ctx(), spec));
-                        if ui.add_enabled(possible.is(spec.action), button).clicked() {
+                        if line(ui, spec, possible.is(spec.action), has_marks, marks.is_on(spec.action)) {
                             asked.push(spec.action);
                             ui.close();
                         }
@@ -41,4 +43,27 @@ pub fn show(ui: &mut Ui, possible: Possible, title: &str) -> Vec<Action> {
         });
     });
     asked
+}
+
+/// A line of a menu, with a check mark where what it puts on is on; whether it was chosen.
+fn line(ui: &mut Ui, spec: &ActionSpec, is_possible: bool, has_marks: bool, is_on: Option<bool>) -> bool {
+    let button = match has_marks {
+        true => {
+            let mark = RichText::new("✔");
+            Button::new((
+                if is_on == Some(true) { mark } else { mark.color(Color32::TRANSPARENT) },
+                spec.label,
+            ))
+        }
+        false => Button::new(spec.label),
+    };
+    let key = key_text(ui.ctx(), spec);
+    let name = format!("{} {key}", spec.label);
+    let response = ui.add_enabled(is_possible, button.shortcut_text(key));
+    // A screen reader is told of the mark by the line's state, not by a sign.
+    response.widget_info(|| match is_on {
+        Some(is_on) => WidgetInfo::selected(WidgetType::Checkbox, is_possible, is_on, name.trim_end()),
+        None => WidgetInfo::labeled(WidgetType::Button, is_possible, name.trim_end()),
+    });
+    response.clicked()
 }

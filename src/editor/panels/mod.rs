@@ -14,6 +14,8 @@ pub mod unsaved;
 use egui::Context;
 
 use super::action::{Action, ActionSpec};
+use super::canvas::Command;
+use super::settings::ThemeChoice;
 
 /// A key as people write it: "Ctrl+Z".
 fn key_text(context: &Context, spec: &ActionSpec) -> String {
@@ -22,6 +24,37 @@ fn key_text(context: &Context, spec: &ActionSpec) -> String {
     [("Questionmark", "?"), ("Equals", "="), ("Minus", "-")]
         .into_iter()
         .fold(text, |text, (name, sign)| text.replace(name, sign))
+}
+
+/// Which of the actions that put something on or off are on.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Marks {
+    /// Moved nodes stand on the grid.
+    pub snaps: bool,
+    /// The map is in the corner of the canvas.
+    pub minimap: bool,
+    /// The histogram is over the picture.
+    pub histogram: bool,
+    /// There is a slice plane.
+    pub slice: bool,
+    /// Which theme was chosen.
+    pub theme: ThemeChoice,
+}
+
+impl Marks {
+    /// Whether what an action puts on is on; `None` for one that does something once.
+    pub fn is_on(self, action: Action) -> Option<bool> {
+        match action {
+            Action::Canvas(Command::ToggleSnap) => Some(self.snaps),
+            Action::Canvas(Command::ToggleMinimap) => Some(self.minimap),
+            Action::Histogram => Some(self.histogram),
+            Action::Slice => Some(self.slice),
+            Action::Dark => Some(self.theme == ThemeChoice::Dark),
+            Action::Light => Some(self.theme == ThemeChoice::Light),
+            Action::System => Some(self.theme == ThemeChoice::System),
+            _ => None,
+        }
+    }
 }
 
 /// Whether an action can be asked for now, by what is open.
@@ -53,7 +86,7 @@ impl Possible {
             | Action::OtherPart
             | Action::FitPicture
             | Action::ActualSize
-            | Action::FrameMedium
+            | Action::FrameVolume
             | Action::Histogram
             | Action::Slice
             | Action::StoreA

@@ -146,7 +146,7 @@ mod tests {
         let first = |query: &str| lines(query, all, &[]).first().map(|line| line.label.clone());
         assert_eq!(first("undo").as_deref(), Some("Undo"));
         assert_eq!(first("sav as").as_deref(), Some("Save as…"));
-        assert_eq!(first("frame m").as_deref(), Some("Frame the medium"));
+        assert_eq!(first("frame v").as_deref(), Some("Frame the volume"));
         assert_eq!(first("xyzzy"), None);
         assert!(lines("undo", Possible::default(), &[]).is_empty());
         assert_eq!(score("", "anything"), Some(0));

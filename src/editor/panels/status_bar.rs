@@ -57,8 +57,8 @@ pub fn show(ui: &mut Ui, figures: &Figures) -> bool {
                 Some(name) => ui.weak(name),
                 None => ui.weak("opening the device …"),
             };
-            ui.weak(format!("GPU {}", bytes(figures.gpu_bytes))).on_hover_text("Held on the device");
-            ui.weak(format!("cache {}", bytes(figures.cache_bytes)))
+            ui.weak(format!("GPU {}", size(figures.gpu_bytes))).on_hover_text("Held on the device");
+            ui.weak(format!("cache {}", size(figures.cache_bytes)))
                 .on_hover_text("Results that need not be computed again");
             if let Some(ms) = figures.picture_ms {
                 ui.weak(format!("picture {}", time(ms))).on_hover_text("Time of the last whole picture");
@@ -81,9 +81,15 @@ pub fn time(ms: f64) -> String {
     }
 }
 
-fn bytes(n: u64) -> String {
-    let mib = n as f64 / (1 << 20) as f64;
-    if mib < 1024.0 { format!("{mib:.0} MiB") } else { format!("{:.1} GiB", mib / 1024.0) }
+/// With a unit that leaves three digits: "3.4 MiB".
+pub fn size(n_bytes: u64) -> String {
+    let units = ["B", "KiB", "MiB", "GiB", "TiB"];
+    let (mut size, mut unit) = (n_bytes as f64, 0);
+    while size >= 1000.0 && unit + 1 < units.len() {
+        (size, unit) = (size / 1024.0, unit + 1);
+    }
+    let digits = usize::from(unit > 0 && size < 10.0);
+    format!("{size:.digits$} {}", units[unit])
 }
 
 /// Something runs: an arc that turns twice a second. One that turns smoothly would have the window drawn as often as
@@ -105,6 +111,9 @@ mod tests {
     #[test]
     fn figures_are_short() {
         assert_eq!([time(4.25), time(42.0), time(4200.0)], ["4.2 ms", "42 ms", "4.2 s"]);
-        assert_eq!([bytes(5 << 20), bytes(3 << 30)], ["5 MiB", "3.0 GiB"]);
+        assert_eq!(
+            [size(0), size(999), size(3_565_158), size(123 << 30)],
+            ["0 B", "999 B", "3.4 MiB", "123 GiB"]
+        );
     }
 }

@@ -89,10 +89,10 @@ fn tone(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, look: &look
 
 /// From the right: place, histogram, wipe.
 fn places(viewport: &mut Viewport, ui: &mut Ui, project: &mut Project, scene: &Scene) {
-    let can_frame = scene.camera.is_some() && scene.bounds.is_some();
-    let frames =
-        ui.add_enabled(can_frame, egui::Button::new("Frame")).on_hover_text("Look at the whole medium");
-    if frames.on_disabled_hover_text("There is no medium yet, or no camera").clicked() {
+    let frames = ui
+        .add_enabled(scene.can_frame(), egui::Button::new("Frame"))
+        .on_hover_text("Look at the whole volume");
+    if frames.on_disabled_hover_text("There is no volume yet, or the camera is refused").clicked() {
         // It can, or the button were not enabled.
         let _ = viewport.frame(project, scene);
     }

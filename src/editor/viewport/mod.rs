@@ -54,7 +54,7 @@ pub struct Scene<'a> {
     pub pictures: &'a HashMap<String, Picture>,
     /// The camera of the document, where it has one.
     pub camera: Option<Camera>,
-    /// Lowest and highest corner of the medium, in meters.
+    /// Lowest and highest corner of the volume, in meters.
     pub bounds: Option<[DVec3; 2]>,
     /// Why there is no picture: a node and its message.
     pub problem: Option<(String, String)>,
@@ -62,6 +62,21 @@ pub struct Scene<'a> {
     pub is_busy: bool,
     /// The document without groups, while there is a slice plane.
     pub flat: Option<&'a Document>,
+}
+
+impl Scene<'_> {
+    /// Whether what is shown is seen by a camera, also by one that would refuse its values.
+    fn has_camera(&self) -> bool {
+        self.look.is_some_and(|look| look.camera.is_some())
+    }
+
+    /// Whether there is something to look at as a whole: a box before a camera, or a picture without one.
+    fn can_frame(&self) -> bool {
+        match self.has_camera() {
+            true => self.camera.is_some() && self.bounds.is_some(),
+            false => self.look.is_some(),
+        }
+    }
 }
 
 /// What a wipe shows beyond its divider.
@@ -141,9 +156,20 @@ impl Viewport {
         self.slice.fit();
     }
 
+    /// Whether the whole picture is shown, for tests.
+    #[cfg(test)]
+    pub fn is_fitted(&self) -> bool {
+        self.place == Place::Fit
+    }
+
     /// A pixel of the screen for each of the picture.
     pub fn one_to_one(&mut self, context: &egui::Context) {
         self.place = Place::one_to_one(context.pixels_per_point());
+    }
+
+    /// Whether the histogram is shown.
+    pub fn shows_histogram(&self) -> bool {
+        self.shows_histogram
     }
 
     /// Shows or hides the histogram.
@@ -167,14 +193,18 @@ impl Viewport {
         self.wheeled.is_some_and(|then| now - then < 0.3)
     }
 
-    /// Looks at the whole medium.
+    /// Looks at the whole volume: by the camera, or without one, as of a slice, at the whole picture.
     ///
     /// # Errors
     /// Says why it cannot, in a line.
-    pub fn frame(&self, project: &mut Project, scene: &Scene) -> Result<(), &'static str> {
-        let camera = scene.camera.ok_or("The picture is of no camera that could be moved")?;
-        let [min, max] = scene.bounds.ok_or("Nothing to frame: no medium has been computed yet")?;
-        hand::write(project, scene, None, "frame the medium", eye::frame(camera, min, max));
+    pub fn frame(&mut self, project: &mut Project, scene: &Scene) -> Result<(), &'static str> {
+        if !scene.has_camera() {
+            self.fit();
+            return Ok(());
+        }
+        let camera = scene.camera.ok_or("The camera's own values are refused: mend them first")?;
+        let [min, max] = scene.bounds.ok_or("Nothing to frame: no volume has been computed yet")?;
+        hand::write(project, scene, None, "frame the volume", eye::frame(camera, min, max));
         Ok(())
     }
 

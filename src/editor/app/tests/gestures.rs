@@ -4,7 +4,10 @@ use egui::{Key, Modifiers, Pos2, Vec2, vec2};
 use egui_kittest::kittest::NodeT;
 
 use super::*;
+use crate::editor::action::Action;
+use crate::editor::canvas::Command;
 use crate::editor::preview::Level;
+use crate::editor::worker::Solved;
 use crate::graph::{PortType, Value};
 use crate::image::Image;
 
@@ -171,6 +174,82 @@ fn the_theme_is_chosen_from_its_menu() {
         assert_eq!(harness.ctx.global_style().visuals.dark_mode, is_dark);
     }
     assert_eq!(harness.state().settings.theme, ThemeChoice::Dark);
+}
+
+#[test]
+fn menus_mark_what_is_on() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.get_by_label("Preset smoke").click();
+    harness.run_steps(3);
+    let marked = |harness: &mut Harness<App>| {
+        harness.get_by_label("View").click();
+        harness.run_steps(2);
+        let names =
+            ["Snap to the grid", "Minimap", "Slice plane", "Histogram Ctrl", "Dark theme", "Light theme"];
+        let is_on = |name: &&str| {
+            let node = harness.get_by_label_contains(name);
+            node.accesskit_node().toggled() == Some(egui::accesskit::Toggled::True)
+        };
+        let on: Vec<&str> = names.into_iter().filter(is_on).collect();
+        press(harness, Modifiers::NONE, Key::Escape);
+        on
+    };
+    assert_eq!(marked(&mut harness), ["Minimap", "Dark theme"]);
+    let context = harness.ctx.clone();
+    for action in [
+        Action::Canvas(Command::ToggleSnap),
+        Action::Canvas(Command::ToggleMinimap),
+        Action::Slice,
+        Action::Histogram,
+        Action::Light,
+    ] {
+        harness.state_mut().perform(&context, action);
+    }
+    harness.run_steps(3);
+    assert_eq!(marked(&mut harness), ["Snap to the grid", "Slice plane", "Histogram Ctrl", "Light theme"]);
+}
+
+#[test]
+fn what_a_transfer_function_shows_is_framed() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.get_by_label("Preset explore").click();
+    harness.run_steps(3);
+    let context = harness.ctx.clone();
+    let camera = |harness: &Harness<App>| look::camera(harness.state().document(), "camera").unwrap();
+    let before = camera(&harness);
+    // As the worker answers: a box around the origin and what shows it.
+    let dense = crate::volume::Dense::centered([20, 10, 10], 0.1);
+    let volume = crate::volume::Volume::from_shape(dense, None, glam::DMat4::IDENTITY);
+    let volume = Value::measured(PortType::Volume, volume, crate::volume::Volume::bytes);
+    let image = Value::new(PortType::Image, 0, Image::new(16, 9, vec![0.5; 16 * 9 * 3]));
+    let values = vec![("plume".to_owned(), "volume", volume), ("look".to_owned(), "image", image)];
+    let (costs, wall_ms, cache_bytes, gpu_bytes) = (Vec::new(), 1.0, 0, 0);
+    let solved = Solved { level: Level::FULL, frame: None, values, costs, wall_ms, cache_bytes, gpu_bytes };
+    harness.state_mut().take(&context, solved, 1);
+    harness.run_steps(2);
+    harness.get_by_label("Frame").click();
+    harness.run_steps(2);
+    assert_ne!(camera(&harness), before);
+    assert!(camera(&harness).look_at.length() < 1e-9);
+    assert_eq!(harness.state_mut().project.undo().as_deref(), Some("frame the volume"));
+}
+
+#[test]
+fn a_slice_is_framed_as_a_picture() {
+    let mut harness = harness();
+    harness.run_steps(2);
+    harness.get_by_label("Preset explore").click();
+    harness.run_steps(3);
+    harness.state_mut().chosen = Some("slice".to_owned());
+    harness.run_steps(2);
+    let context = harness.ctx.clone();
+    harness.state_mut().perform(&context, Action::ActualSize);
+    harness.run_steps(2);
+    harness.get_by_label("Frame").click();
+    harness.run_steps(2);
+    assert!(harness.state().viewport.is_fitted() && !harness.state().project.can_undo());
 }
 
 #[test]

@@ -119,14 +119,40 @@ fn dialogs_open_by_their_keys_and_close_by_escape() {
     }
 }
 
+/// The dialog draws its field to search on black, whatever the theme: dark letters could not be read there.
+#[test]
+fn dialogs_of_the_light_theme_have_nothing_black() {
+    let mut harness = on_smoke();
+    for (action, has_search) in [(Action::Dark, true), (Action::Light, false)] {
+        let context = harness.ctx.clone();
+        harness.state_mut().perform(&context, action);
+        press(&mut harness, Modifiers::COMMAND, Key::O);
+        harness.run_steps(4);
+        assert!(harness.query_by_label("Open a graph").is_some());
+        assert_eq!(harness.query_by_label("🔍").is_some(), has_search);
+        press(&mut harness, Modifiers::NONE, Key::Escape);
+    }
+}
+
+#[test]
+fn the_time_of_a_picture_is_not_that_of_the_next_graph() {
+    let mut harness = on_smoke();
+    harness.state_mut().figures.picture_ms = Some(4200.0);
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("4.2 s").is_some());
+    harness.state_mut().show(Project::default());
+    harness.run_steps(2);
+    assert!(harness.query_by_label_contains("4.2 s").is_none());
+}
+
 #[test]
 fn what_cannot_be_framed_says_so_and_an_error_stays_until_it_is_dismissed() {
     let mut harness = on_smoke();
     press(&mut harness, Modifiers::COMMAND, Key::Num2);
-    assert!(harness.query_by_label_contains("no medium has been computed yet").is_some());
+    assert!(harness.query_by_label_contains("no volume has been computed yet").is_some());
     harness.state_mut().toasts.complain("the disk is full");
     harness.run_steps(400);
-    assert!(harness.query_by_label_contains("no medium has been computed yet").is_none());
+    assert!(harness.query_by_label_contains("no volume has been computed yet").is_none());
     assert!(harness.query_by_label("the disk is full").is_some());
     harness.get_by_label("×").click();
     harness.run_steps(3);

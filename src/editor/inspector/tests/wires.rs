@@ -23,7 +23,9 @@ fn ports_lead_to_what_they_are_wired_to() {
     assert_eq!(wires(&harness), 2);
     let nodes = json!({ "n": { "type": "medium" } });
     let harness = inspector(nodes, json!([]), &["n"]);
-    assert!(says(&harness, "empty: wire a volume to it") && says(&harness, "read by nothing"));
+    assert!(
+        says(&harness, "empty: wire an output of type volume to it") && says(&harness, "read by nothing")
+    );
 }
 
 /// A group of two media, and a march that reads one of them.

@@ -137,7 +137,7 @@ fn with_ctrl_the_picture_is_moved_and_zoomed_in_its_place() {
 }
 
 #[test]
-fn the_medium_is_framed() {
+fn the_volume_is_framed() {
     let mut harness = window();
     click(&mut harness, "Frame");
     let framed = harness.state().camera();
@@ -145,8 +145,8 @@ fn the_medium_is_framed() {
     // The sphere around the box touches the picture's edge.
     let half = (0.5 * framed.fov_y_deg).to_radians();
     assert!((3f64.sqrt() / distance(framed) - half.sin()).abs() < 1e-5);
-    assert_eq!(harness.state_mut().project.undo().as_deref(), Some("frame the medium"));
-    // Without a medium there is nothing to be framed, and nothing is.
+    assert_eq!(harness.state_mut().project.undo().as_deref(), Some("frame the volume"));
+    // Without a volume there is nothing to be framed, and nothing is.
     harness.state_mut().bounds = None;
     harness.run_steps(2);
     let before = harness.state().camera();
