@@ -29,7 +29,7 @@ mod stats;
 
 /// Light in smoke, fire, cloud and any other participating medium, as a graph of nodes.
 #[derive(Parser)]
-#[command(name = "tyndall", version)]
+#[command(name = "tyndall", version, override_usage = USAGE, after_help = EDITOR)]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -47,6 +47,14 @@ enum Command {
     #[command(external_subcommand)]
     Other(Vec<OsString>),
 }
+
+const USAGE: &str = "tyndall [GRAPH | VOLUME | FOLDER]\n       tyndall <COMMAND>";
+
+const EDITOR: &str = "\
+Without a command the editor is opened, on a graph if one is named:
+  tyndall                    its start page: presets, recent graphs; drop a .vdb on it
+  tyndall graphs/smoke.json  a graph
+  tyndall cloud.vdb          a volume, or a folder of numbered ones, lit and framed";
 
 /// Wrong usage or input, or nothing could be done.
 const REFUSED: u8 = 2;
@@ -69,9 +77,10 @@ pub fn main(open_editor: OpenEditor) -> ExitCode {
         Some(Command::Nodes(args)) => nodes::run(&args),
         Some(Command::New(args)) => new::run(&args),
         Some(Command::Doctor(args)) => doctor::run(&args),
-        Some(Command::Other(words)) => match graph(&words) {
-            Some(path) => edit(Some(path)),
-            None => Err(unknown(&words)),
+        Some(Command::Other(words)) => match (graph(&words), &words[..]) {
+            (Some(path), [_]) => edit(Some(path)),
+            (Some(_), _) => Err(too_many(&words)),
+            (None, _) => Err(unknown(&words)),
         },
     };
     result.unwrap_or_else(|error| {
@@ -83,10 +92,19 @@ pub fn main(open_editor: OpenEditor) -> ExitCode {
     })
 }
 
-/// A first word that is no subcommand may be a graph to open.
+/// A first word that is no subcommand may be a graph to open; no subcommand has an ending.
 fn graph(words: &[OsString]) -> Option<&Path> {
     let path = Path::new(words.first()?);
-    (path.extension().is_some_and(|ending| ending == "json") || path.exists()).then_some(path)
+    (path.extension().is_some() || path.exists()).then_some(path)
+}
+
+/// The editor has one graph.
+fn too_many(words: &[OsString]) -> anyhow::Error {
+    let more: Vec<_> = words[1..].iter().map(|word| word.to_string_lossy()).collect();
+    anyhow::anyhow!(
+        "the editor is opened on one graph or volume; leave out {}, or name a subcommand first, such as render",
+        more.join(" ")
+    )
 }
 
 /// Or a slip of the finger.

@@ -3,6 +3,7 @@
 
 use std::fmt;
 use std::io::{ErrorKind, Write};
+use std::path::Path;
 
 use anstyle::{AnsiColor, Style};
 
@@ -81,6 +82,16 @@ pub fn columns(rows: &[Vec<String>]) -> String {
         text.push('\n');
     }
     text
+}
+
+/// A file as it is named from here: `out/a.png`, not `graphs/../out/a.png`.
+pub fn near(path: &Path) -> String {
+    let here = std::env::current_dir().and_then(std::fs::canonicalize);
+    let full = std::fs::canonicalize(path);
+    let near = here.ok().zip(full.ok()).filter(|_| path.is_relative());
+    // What leads elsewhere, by a link or by `..`, stays as it was said.
+    let near = near.and_then(|(here, full)| Some(full.strip_prefix(here).ok()?.to_owned()));
+    near.unwrap_or_else(|| path.to_owned()).display().to_string()
 }
 
 /// Bytes as people read them.

@@ -13,7 +13,7 @@ use tyndall::session::{Session, Solved};
 
 use super::REFUSED;
 use super::frames::Frames;
-use super::output::{Lines, error, size};
+use super::output::{Lines, error, near, size};
 use super::progress::Progress;
 use super::scene::{Output, Scene};
 use super::stats::Stats;
@@ -162,8 +162,7 @@ impl Job<'_> {
             // Asked again, because another machine may share the work.
             if is_kept(&outputs) {
                 n_kept += 1;
-                let paths: Vec<String> =
-                    outputs.iter().map(|output| output.path.display().to_string()).collect();
+                let paths: Vec<String> = outputs.iter().map(|output| near(&output.path)).collect();
                 progress.print(&format!("frame {frame}: {} is there, kept", paths.join(", ")))?;
                 continue;
             }
@@ -248,7 +247,7 @@ fn n_runs(document: &Document, outputs: &[Output]) -> usize {
 
 /// `out.exr: 32x32, 12.3 KiB`.
 fn describe(output: &Output, evaluation: &Evaluation) -> String {
-    let mut text = output.path.display().to_string();
+    let mut text = near(&output.path);
     if let Some(value) = evaluation.value(&output.node, "image") {
         let image: &Image = value.get();
         text += &format!(": {}x{}", image.width, image.height);

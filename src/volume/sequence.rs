@@ -21,7 +21,7 @@ pub enum Sequence {
 #[derive(Debug, thiserror::Error)]
 pub enum SequenceError {
     /// Neither file nor folder.
-    #[error("{0}: no such file or folder: check the path, relative to the graph file")]
+    #[error("{0}: no such file or folder: check the path; one in a graph starts at the graph's folder")]
     Missing(PathBuf),
     /// No file fits the pattern.
     #[error("{0}: no file fits this pattern: #### stands for the frame's digits")]

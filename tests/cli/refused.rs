@@ -179,6 +179,26 @@ fn words_that_are_no_subcommand() {
 }
 
 #[test]
+fn the_editor_is_named_in_the_help_and_has_one_graph() {
+    let desk = Desk::new();
+    let help = desk.run_blind(&["--help"]);
+    assert_eq!(help.code, Some(0));
+    assert!(help.stdout.contains("Usage: tyndall [GRAPH | VOLUME | FOLDER]"), "{}", help.stdout);
+    assert!(help.stdout.contains("tyndall cloud.vdb"), "{}", help.stdout);
+    desk.run_blind(&["g.json", "--set", "medium.g=0"]).refused(
+        "error: the editor is opened on one graph or volume; leave out --set medium.g=0, or name a subcommand first, such as \
+         render\n",
+    );
+}
+
+#[test]
+fn a_file_that_is_not_there_is_no_subcommand() {
+    let ran = Desk::new().run_blind(&["none.vdb"]);
+    assert_eq!(ran.code, Some(2));
+    assert!(ran.stderr.contains("none.vdb: no such file or folder: check the path"), "{}", ran.stderr);
+}
+
+#[test]
 fn no_display() {
     let desk = Desk::new();
     // Elsewhere a window needs no variable.
@@ -223,7 +243,7 @@ fn volumes_that_cannot_be_read() {
     desk.write("cut.vdb", &bytes[..bytes.len() / 2]);
     desk.write("whole.vdb", &bytes);
     desk.run(&["render", "g.json"]).refused(
-        "g.json: node 'ball': none.vdb: no such file or folder: check the path, relative to the graph file\n",
+        "g.json: node 'ball': none.vdb: no such file or folder: check the path; one in a graph starts at the graph's folder\n",
     );
     let ran = desk.run(&["render", "g.json", "--set", "ball.path=cut.vdb"]);
     let line = ran.stderr.strip_suffix('\n').unwrap();

@@ -19,6 +19,13 @@ fn picture_and_its_costs() {
     // The path in the graph starts at the graph, those on the command line at the working directory.
     let text = desk.run(&["render", "deep/g.json"]).done();
     assert!(text.starts_with("deep/out/ball.exr: 32x32, "), "{text}");
+    // As one finds it from here.
+    desk.write("deep/near.json", GRAPH.replace("out/ball.exr", "../near.exr"));
+    let text = desk.run(&["render", "deep/near.json"]).done();
+    assert!(text.starts_with("near.exr: 32x32, "), "{text}");
+    for name in ["near.exr", "deep/near.json"] {
+        fs::remove_file(desk.path(name)).unwrap();
+    }
     let args = ["render", "deep/g.json", "-o", "new/a.png", "--size", "48x16", "--stats", "s.json"];
     desk.run(&[&args[..], &["--set", "medium.g=0", "--adapter", "auto"]].concat()).done();
     assert_eq!(desk.files(), ["deep/g.json", "deep/out/ball.exr", "g.json", "new/a.png", "s.json"]);
