@@ -78,7 +78,7 @@ impl Broken {
 
     /// Whether it may be otherwise by now.
     fn is_out_of_date(&self) -> bool {
-        self.told.as_ref().is_some_and(|(_, files)| !files.iter().all(FileState::holds))
+        self.told.as_ref().is_some_and(|(_, files)| !files.iter().all(FileState::is_current))
     }
 }
 
@@ -124,12 +124,13 @@ impl Player {
         self.broken.extend(missing.unwrap_or_default().into_iter().map(|frame| (frame, Broken::missing())));
     }
 
-    /// Whether a frame is passed over. One whose files are others by now is not.
-    pub fn passes_over(&mut self, frame: i64) -> bool {
-        if self.broken.get(&frame).is_some_and(Broken::is_out_of_date) {
+    /// Takes the mark from a frame whose files are others by now; whether it did.
+    pub fn unmark_changed(&mut self, frame: i64) -> bool {
+        let is_changed = self.broken.get(&frame).is_some_and(Broken::is_out_of_date);
+        if is_changed {
             self.broken.remove(&frame);
         }
-        self.broken.contains_key(&frame)
+        is_changed
     }
 
     /// Whether something changes with the frame.
@@ -233,20 +234,26 @@ mod tests {
     #[test]
     fn what_is_broken_stays_so_until_it_may_be_otherwise() {
         let folder = tempfile::tempdir().unwrap();
-        let file = folder.path().join("a_0002.vdb");
+        let [file, missing] = ["a_0002.vdb", "b_0002.vdb"].map(|name| folder.path().join(name));
         std::fs::write(&file, "damaged").unwrap();
+        let files = || vec![FileState::of(&file), FileState::of(&missing)];
         let mut player = Player::default();
         let span = || Some(([1, 4], [3].into()));
         player.set_span(span(), |_| true);
-        player.broken.insert(2, Broken::told("medium", "no grid", vec![FileState::of(&file)]));
+        player.broken.insert(2, Broken::told("medium", "no grid", files()));
         let broken = |player: &Player| player.broken.keys().copied().collect::<Vec<_>>();
         // An edit elsewhere.
         player.set_span(span(), |node| node != "march");
         assert_eq!(broken(&player), [2, 3]);
-        assert!(player.passes_over(2) && player.passes_over(3) && !player.passes_over(4));
-        std::fs::write(&file, "mended now").unwrap();
-        assert!(!player.passes_over(2));
-        player.broken.insert(2, Broken::told("medium", "no grid", vec![FileState::of(&file)]));
+        assert!((2..=4).all(|frame| !player.unmark_changed(frame)));
+        assert_eq!(broken(&player), [2, 3]);
+        // One is mended, then there is one that was not.
+        for changed in [&file, &missing] {
+            std::fs::write(changed, "mended now").unwrap();
+            assert!(player.unmark_changed(2) && !player.unmark_changed(2));
+            assert_eq!(broken(&player), [3]);
+            player.broken.insert(2, Broken::told("medium", "no grid", files()));
+        }
         player.set_span(span(), |node| node != "medium");
         assert_eq!(broken(&player), [3]);
     }

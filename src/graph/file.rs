@@ -21,9 +21,14 @@ impl FileState {
         Self { path: path.to_owned(), found }
     }
 
+    /// Whether nothing has changed since; a file that was not there is not there now.
+    pub fn is_current(&self) -> bool {
+        Self::of(&self.path) == *self
+    }
+
     /// Whether the file is there and still the same.
     pub fn holds(&self) -> bool {
-        self.found.is_some() && Self::of(&self.path) == *self
+        self.found.is_some() && self.is_current()
     }
 
     /// For keys: equal only for equal states.
@@ -51,10 +56,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("file");
         let missing = FileState::of(&path);
-        assert!(!missing.holds());
+        assert!(!missing.holds() && missing.is_current());
         std::fs::write(&path, "abc").unwrap();
         let written = FileState::of(&path);
-        assert!(written.holds());
+        assert!(written.holds() && written.is_current() && !missing.is_current());
         std::fs::write(&path, "abcd").unwrap();
         let longer = FileState::of(&path);
         assert!(!written.holds() && longer.holds());
@@ -67,6 +72,6 @@ mod tests {
             assert!(states[..i].iter().all(|b| a != b), "{i}");
         }
         std::fs::remove_file(&path).unwrap();
-        assert!(!touched.holds());
+        assert!(!touched.holds() && !touched.is_current());
     }
 }

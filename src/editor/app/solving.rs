@@ -54,7 +54,8 @@ impl App {
         let is_down = context.input(|input| input.pointer.any_down());
         let is_drag = is_down || self.viewport.is_moving(now) || self.player.is_playing();
         let frame = self.asks_frame();
-        if frame.is_some_and(|frame| self.player.passes_over(frame)) {
+        let is_changed = frame.is_some_and(|frame| self.player.unmark_changed(frame));
+        if frame.is_some_and(|frame| self.player.broken.contains_key(&frame)) {
             return;
         }
         let revision = self.project.revision();
@@ -62,7 +63,8 @@ impl App {
         let slice = self.viewport.slice.node(&flat);
         let is_known = self.asked.as_ref().is_some_and(|asked| {
             // A pointer that goes down changes nothing; when it goes up, the rest is made up for.
-            (asked.revision, asked.frame) == (revision, frame)
+            !is_changed
+                && (asked.revision, asked.frame) == (revision, frame)
                 && asked.look == self.look
                 && asked.slice == slice
                 && (is_drag || !asked.is_drag)

@@ -368,6 +368,24 @@ fn a_broken_frame_is_told_marked_and_passed_over() {
 }
 
 #[test]
+fn a_frame_that_failed_is_asked_for_again_where_its_file_is_mended() {
+    let (folder, mut harness) = sequence();
+    harness.run_steps(2);
+    harness.state_mut().note(failed("medium", "the grid ends in its middle"), false, Some(1));
+    harness.run_steps(2);
+    let asked = |harness: &Harness<App>| {
+        let asked = harness.state().asked.as_ref().unwrap();
+        (asked.frame(), asked.number(), harness.state().player.broken.contains_key(&1))
+    };
+    let (_, before, _) = asked(&harness);
+    assert_eq!(asked(&harness), (Some(1), before, true));
+    std::fs::write(folder.path().join("steam_1.vdb"), "mended").unwrap();
+    harness.run_steps(3);
+    // Once.
+    assert_eq!(asked(&harness), (Some(1), before + 1, false));
+}
+
+#[test]
 fn groups_are_dissolved_where_the_graph_changes_alone() {
     let (_folder, mut harness) = sequence();
     harness.key_press_modifiers(egui::Modifiers::COMMAND, egui::Key::Num3);
