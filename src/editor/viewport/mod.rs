@@ -268,7 +268,7 @@ impl Viewport {
         }
         overlay::guides(ui, area, rect, scene.camera, &told);
         if let (true, Some(shown)) = (self.shows_histogram, &self.shown[0]) {
-            overlay::histogram(ui, area, &shown.histogram, &self.layer);
+            overlay::histogram(ui, area, rect, &shown.histogram, &self.layer);
         }
         if let Some((frames, frame)) =
             scene.look.and_then(|look| hand::keys(project.document(), look.camera.as_ref()?))

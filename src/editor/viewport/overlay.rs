@@ -255,15 +255,17 @@ pub fn short(x: f32) -> String {
     }
 }
 
-/// Counts by stops, the display's white marked.
-pub fn histogram(ui: &Ui, area: Rect, histogram: &Histogram, layer: &str) {
+/// Counts by stops, the display's white marked, in the corner of `area`; the picture lies at `rect`.
+pub fn histogram(ui: &Ui, area: Rect, rect: Rect, histogram: &Histogram, layer: &str) {
+    let seen = rect.intersect(area);
+    let at = area.left_top() + vec2(10.0, 10.0);
     // Above the axes, or above the scale bar where there is no room for them.
-    let below = if axes_at(area).is_some() { AXES } else { LOWEST[0] };
-    let size = vec2(240.0, (area.height() - below - 10.0).min(84.0));
+    let below = if axes_at(seen).is_some() { AXES } else { LOWEST[0] };
+    let size = vec2(240.0, (seen.bottom() - below - at.y).min(84.0));
     if size.y < 44.0 {
         return;
     }
-    let rect = Rect::from_min_size(area.left_top() + vec2(10.0, 10.0), size);
+    let rect = Rect::from_min_size(at, size);
     let painter = ui.painter();
     painter.rect_filled(rect, 4.0, SHADE);
     let inside = rect.shrink2(vec2(8.0, 14.0));

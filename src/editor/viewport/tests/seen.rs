@@ -103,6 +103,32 @@ fn where_there_is_no_room_things_go_in_an_order() {
     assert!(lowest.is_sorted_by(|a, b| a > b) && lowest[0] < 250.0 && lowest[3] < 45.0, "{lowest:?}");
 }
 
+#[test]
+fn a_moved_picture_has_no_guides_under_the_histogram() {
+    let mut harness = window();
+    harness.state_mut().viewport.toggle_histogram();
+    harness.run_steps(2);
+    let names = ["Axes", "Histogram of", "Scale bar"];
+    let mut is_seen = names.map(|_| false);
+    // As high as the viewport: from wholly seen to out at the top.
+    let area = harness.get_by_label("Picture").rect();
+    let zoom = area.height() / 64.0;
+    for up in (0..=area.height() as usize).step_by(4) {
+        harness.state_mut().viewport.place = Place::Free { zoom, offset: vec2(0.0, -(up as f32)) };
+        harness.run_steps(2);
+        let rects = names.map(|name| harness.query_by_label_contains(name).map(|node| node.rect()));
+        let [axes, histogram, scale] = rects;
+        for (name, rect) in [("axes", axes), ("scale bar", scale)] {
+            let covers = histogram.zip(rect).is_some_and(|(a, b)| a.shrink(0.5).intersects(b));
+            assert!(!covers, "{name} at {up}: {histogram:?}, {rect:?}");
+        }
+        for (is_seen, rect) in is_seen.iter_mut().zip(rects) {
+            *is_seen |= rect.is_some();
+        }
+    }
+    assert_eq!(is_seen, [true; 3]);
+}
+
 /// What the viewport looks like, with all that can be drawn over a picture, in both themes.
 #[test]
 fn it_looks_as_it_did() {
