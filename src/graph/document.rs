@@ -31,7 +31,7 @@ use super::spec::Catalog;
 
 use read::form;
 
-pub use read::is_node_name;
+pub use read::{is_node_name, node_name_from};
 pub(super) use strict::parse_json;
 
 /// One step of migration: changes a file of version i + 1, for place i in the list, into the next.

@@ -30,7 +30,9 @@ mod toy;
 
 pub use cache::Cache;
 pub use check::{Problem, check};
-pub use document::{Document, DocumentError, End, Frame, GROUP, Node, RESERVED, Wire, is_node_name};
+pub use document::{
+    Document, DocumentError, End, Frame, GROUP, Node, RESERVED, Wire, is_node_name, node_name_from,
+};
 pub use edit::SetError;
 pub use eval::{
     CancelToken, Evaluation, Event, Host, Inputs, NodeError, NodeJob, Outcome, Outputs, evaluate,

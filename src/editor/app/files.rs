@@ -9,7 +9,7 @@ use super::App;
 use crate::editor::dialog;
 use crate::editor::panels::unsaved::{self, Answer};
 use crate::editor::{Project, Selection, Statuses};
-use crate::graph::Document;
+use crate::graph::{Document, node_name_from};
 use crate::template;
 use crate::volume::vdb;
 
@@ -216,7 +216,7 @@ impl App {
         match Document::load(path) {
             Ok(preset) => {
                 let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-                let name = stem.replace(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '-', "_");
+                let name = node_name_from(&stem);
                 self.canvas.insert_graph(&mut self.project, &mut self.selection, &preset, &name);
             }
             Err(error) => self.toasts.complain(format!("{}: {error}", path.display())),

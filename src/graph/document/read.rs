@@ -22,8 +22,19 @@ pub(super) fn graph(mut root: Map<String, Json>, base: &Path) -> (Document, Vec<
 
 /// Whether a node may have this name: it must survive in a wire and on the command line.
 pub fn is_node_name(name: &str) -> bool {
-    let allowed = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
-    !name.is_empty() && name.chars().all(allowed)
+    !name.is_empty() && name.chars().all(is_in_names)
+}
+
+/// The text with `_` for all that no name has; `_` where there is no text.
+pub fn node_name_from(text: &str) -> String {
+    match text {
+        "" => "_".to_owned(),
+        _ => text.replace(|c| !is_in_names(c), "_"),
+    }
+}
+
+fn is_in_names(c: char) -> bool {
+    c.is_alphanumeric() || c == '_' || c == '-'
 }
 
 pub(super) fn form(what: &str, found: &Json, allowed: &str) -> String {

@@ -313,6 +313,14 @@ fn groups_frames_and_bends_say_their_form() {
 }
 
 #[test]
+fn names_are_made_from_any_text() {
+    for (text, name) in [("Wölkchen", "Wölkchen"), ("a b/c.d-e_1", "a_b_c_d-e_1"), ("", "_"), (" ", "_")] {
+        assert_eq!(node_name_from(text), name);
+        assert!(is_node_name(name), "{name}");
+    }
+}
+
+#[test]
 fn a_later_version_opens_with_what_is_understood() {
     let open = |text: &str| Document::open_leniently(text, Path::new("")).unwrap();
     let (document, left_out) = open(
