@@ -29,7 +29,10 @@ impl Drop for Running {
 /// A screen of its own, whose pixels are written to this folder: the server chooses the number.
 fn screen(folder: &Path) -> Option<(Running, String)> {
     let mut server = Command::new("Xvfb");
-    server.args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-fbdir"]).arg(folder);
+    // Without -noreset it begins anew whenever its last client leaves, and refuses who comes meanwhile.
+    server
+        .args(["-displayfd", "1", "-screen", "0", "1280x800x24", "-nolisten", "tcp", "-noreset", "-fbdir"])
+        .arg(folder);
     let mut server = Running(server.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().ok()?);
     let mut number = String::new();
     BufReader::new(server.0.stdout.take()?).read_line(&mut number).ok()?;
