@@ -56,6 +56,8 @@ impl App {
         let frame = self.asks_frame();
         let is_changed = frame.is_some_and(|frame| self.player.unmark_changed(frame));
         if frame.is_some_and(|frame| self.player.broken.contains_key(&frame)) {
+            // Nobody tells that a file was mended.
+            context.request_repaint_after_secs(1.0);
             return;
         }
         let revision = self.project.revision();

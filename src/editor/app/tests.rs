@@ -379,6 +379,9 @@ fn a_frame_that_failed_is_asked_for_again_where_its_file_is_mended() {
     };
     let (_, before, _) = asked(&harness);
     assert_eq!(asked(&harness), (Some(1), before, true));
+    // The window looks at the file again without being touched.
+    let delay = harness.output().viewport_output[&egui::ViewportId::ROOT].repaint_delay;
+    assert!(delay <= std::time::Duration::from_secs(1), "{delay:?}");
     std::fs::write(folder.path().join("steam_1.vdb"), "mended").unwrap();
     harness.run_steps(3);
     // Once.
