@@ -65,7 +65,7 @@ pub(super) const SAMPLES_OF_A_SHAPE: f64 = 16.0;
 /// What it moves: the samples of each corner and beam, and a depth.
 pub(super) fn work(medium: &Medium, beams: &[Beam]) -> StageWork {
     let samples = if medium.homogeneous.is_some() { SAMPLES_OF_A_SHAPE } else { samples(medium, beams) };
-    let corners: usize = medium.lattice.dims.iter().map(|n| n + 1).product();
+    let corners = medium.lattice.n_corners();
     let moved_bytes = Some(((corners * beams.len()) as f64 * 4.0 * (1.0 + samples)) as u64);
     StageWork { stage: "walk", runs: beams.len(), moved_bytes }
 }

@@ -37,6 +37,7 @@ const WIDE: f64 = 0.998;
 /// of each other and are up to 0.4 optical depths thick; it goes with that thickness. What a grid resolves, clouds of 1.2
 /// a cell and a sharp checkerboard among them, changes by less than a fiftieth of it.
 pub const SCAN_ERROR: f64 = 0.015;
+
 /// The cheaper way, or the one that was asked for.
 pub fn depths(facts: DepthFacts, prune: bool) -> (Depths, Decision) {
     const RULE: &str = "depths";

@@ -35,6 +35,11 @@ pub struct Fineness {
 }
 
 impl Lattice {
+    /// Corners of its cells.
+    pub fn n_corners(&self) -> usize {
+        self.dims.iter().map(|n| n + 1).product()
+    }
+
     /// A grid for the voxels from `min` to `max` (inclusive) of a volume with this map.
     pub fn fit(min: DVec3, max: DVec3, world_from_voxel: DMat4, fineness: Fineness) -> Self {
         let linear = DMat3::from_mat4(world_from_voxel);

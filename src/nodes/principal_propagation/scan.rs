@@ -43,7 +43,8 @@ mirror! {
     }
 }
 
-/// Planes of a slab. Half as many double what is interpolated and save a third of the time.
+/// Planes of a slab. Twice as many change the picture of a cloud half as much (0.014 and 0.028 %), and take twice the
+/// samples.
 const SLAB: usize = 8;
 
 /// Corners of a thread, along z, or y where the slabs stand across z; `COLUMN` of
@@ -93,12 +94,8 @@ pub(super) fn fits(run: &Run, medium: &Medium, layout: AtlasLayout) -> bool {
     bytes(medium, layout.pack) <= run.gpu.max_binding_bytes()
 }
 
-fn n_corners(medium: &Medium) -> usize {
-    medium.lattice.dims.iter().map(|n| n + 1).product()
-}
-
 fn bytes(medium: &Medium, n_beams: usize) -> u64 {
-    (n_beams * n_corners(medium) * size_of::<f32>()) as u64
+    (n_beams * medium.lattice.n_corners() * size_of::<f32>()) as u64
 }
 
 /// The slabs of the `n`th beam of a pack, of so many planes each, in the order in which the light meets them; one
@@ -137,7 +134,7 @@ fn record(
         let params = ScanParams {
             shape: medium.shape(),
             low: low.map(|n| n as u32),
-            first: (n * n_corners(medium)) as u32,
+            first: (n * medium.lattice.n_corners()) as u32,
             extent: extent.map(|n| n as u32),
             along: along as u32,
             corners: corners.map(|n| n as u32),
@@ -166,13 +163,13 @@ pub(super) fn work(medium: &Medium, beams: &[Beam], is_scanned: &[bool], per_pac
         if *is_scanned { in_slab } else { walk::samples(medium, std::slice::from_ref(beam)) }
     };
     let read: f64 = beams.iter().zip(is_scanned).map(read).sum();
-    let depths = (n_corners(medium) * beams.len()) as f64;
+    let depths = (medium.lattice.n_corners() * beams.len()) as f64;
     let moved = |values: f64| Some((4.0 * values) as u64);
     [
         StageWork {
             stage: "principal_propagation/scan",
             runs: beams.len(),
-            moved_bytes: moved(n_corners(medium) as f64 * read + depths),
+            moved_bytes: moved(medium.lattice.n_corners() as f64 * read + depths),
         },
         StageWork {
             stage: "principal_propagation/pack",

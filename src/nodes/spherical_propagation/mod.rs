@@ -154,7 +154,7 @@ fn points<'a>(
         n_angular: asked("angular"),
         n_radial: asked("radial"),
         n_lights: beams.len(),
-        n_corners: medium.lattice.dims.iter().map(|n| n + 1).product(),
+        n_corners: medium.lattice.n_corners(),
         samples: walk::samples(medium, beams),
         corner_bytes,
         longest: medium.lattice.occupied.into_iter().max().unwrap_or(0),
