@@ -183,7 +183,10 @@ fn thin_matter_scatters_once() {
     for (g, density_scale) in [(0.0, 8e-4), (0.5, 5e-5), (-0.3, 1e-4)] {
         let graph = cloud(&[&format!("medium.g={g}"), &format!("medium.density_scale={density_scale}")]);
         let [pruned, full] = both(&mut session, &graph, "residual", "scattering");
-        let lost = pruned.beauty().iter().zip(full.beauty()).filter(|(_, b)| **b > 0.0);
+        // A texture filter of 8 bits knows no weight under 1/512: pixels that graze the medium, so dim, may see
+        // nothing of cells of one size and something of those of half.
+        let least = 1e-3 * full.beauty().iter().copied().fold(0.0, f32::max);
+        let lost = pruned.beauty().iter().zip(full.beauty()).filter(|(_, b)| **b > least);
         let lost = lost.map(|(a, b)| f64::from((b - a) / b)).fold(0.0, f64::max);
         eprintln!("g {g}: {lost:.2e} of a pixel");
         assert!(lost > 1e-5 && lost <= tyndall::planner::ERROR_TARGET, "g {g}: {lost}");

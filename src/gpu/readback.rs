@@ -12,11 +12,24 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::OutOfMemory`]; [`GpuError::Device`] where the device was lost.
     pub fn read_buffer<T: bytemuck::Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, GpuError> {
-        let bytes = buffer.bytes();
+        self.read_start(buffer, buffer.bytes(), bytemuck::pod_collect_to_vec)
+    }
+
+    /// What `take` makes of the first `bytes` of a buffer, a multiple of 4, where they lie: a large picture is not
+    /// copied once more.
+    ///
+    /// # Errors
+    /// As [`Self::read_buffer`].
+    pub fn read_start<T>(
+        &self,
+        buffer: &Buffer,
+        bytes: u64,
+        take: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, GpuError> {
         let copy = |encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer| {
             encoder.copy_buffer_to_buffer(&buffer.buffer, 0, staging, 0, bytes);
         };
-        self.read_back(bytes, copy, bytemuck::pod_collect_to_vec)
+        self.read_back(bytes, copy, take)
     }
 
     /// The texels of a texture, x fastest.
@@ -56,23 +69,47 @@ impl Gpu {
         copy: impl FnOnce(&mut wgpu::CommandEncoder, &wgpu::Buffer),
         take: impl FnOnce(&[u8]) -> T,
     ) -> Result<T, GpuError> {
-        let lost = |error: &dyn std::fmt::Display| GpuError::Device(error.to_string());
-        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
-        let staging = self.allocate("read back", bytes, usage, REMEDY)?;
+        let staging = self.staging(bytes)?;
         let mut encoder = self.device.create_command_encoder(&Default::default());
         copy(&mut encoder, &staging.buffer);
         self.queue.submit([encoder.finish()]);
-        let (sender, receiver) = std::sync::mpsc::channel();
-        staging.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver waits below; it is gone only if poll failed, which is reported there.
-            let _ = sender.send(result);
-        });
+        let mapped = self.map(&staging);
         let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
         self.check("reading back")?;
-        polled.map_err(|error| lost(&error))?;
-        let mapped = receiver.recv().map_err(|error| lost(&error))?;
+        polled.map_err(|error| GpuError::Device(error.to_string()))?;
+        mapped.read(take)
+    }
+
+    /// A buffer that can be mapped.
+    pub(super) fn staging(&self, bytes: u64) -> Result<Buffer, GpuError> {
+        let usage = wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ;
+        self.allocate("read back", bytes, usage, REMEDY)
+    }
+
+    /// Asks for a mapping, which is there after the next wait for the device.
+    pub(super) fn map<'a>(&self, staging: &'a Buffer) -> Mapping<'a> {
+        let (sender, receiver) = std::sync::mpsc::channel();
+        staging.buffer.map_async(wgpu::MapMode::Read, .., move |result| {
+            // The receiver is asked after the wait; it is gone only where that failed, which is told there.
+            let _ = sender.send(result);
+        });
+        Mapping { staging, receiver }
+    }
+}
+
+/// A mapping that was asked for.
+pub(super) struct Mapping<'a> {
+    staging: &'a Buffer,
+    receiver: std::sync::mpsc::Receiver<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl Mapping<'_> {
+    /// What `take` makes of the contents.
+    pub(super) fn read<T>(self, take: impl FnOnce(&[u8]) -> T) -> Result<T, GpuError> {
+        let lost = |error: &dyn std::fmt::Display| GpuError::Device(error.to_string());
+        let mapped = self.receiver.recv().map_err(|error| lost(&error))?;
         mapped.map_err(|error| lost(&error))?;
-        let view = staging.buffer.get_mapped_range(..).map_err(|error| lost(&error))?;
+        let view = self.staging.buffer.get_mapped_range(..).map_err(|error| lost(&error))?;
         Ok(take(&view))
     }
 }

@@ -135,6 +135,8 @@ impl Recorder<'_> {
         let ticks = self.resolve()?;
         let start = Instant::now();
         self.gpu.queue.submit([self.encoder.finish()]);
+        // The times are mapped by the wait for what they time: each wait costs a round trip to the device.
+        let mapped = ticks.as_ref().map(|ticks| self.gpu.map(ticks));
         let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
         let wall_ms = start.elapsed().as_secs_f64() * 1e3;
         if let Some(error) = self.scope.take().and_then(|scope| pollster::block_on(scope.pop())) {
@@ -142,11 +144,11 @@ impl Recorder<'_> {
         }
         self.gpu.check(&self.label)?;
         waited.map_err(|error| GpuError::Device(error.to_string()))?;
-        let times = match ticks {
+        let times = match mapped {
             // Copies have no timestamps.
             None => vec![StageTime { stage: self.label, gpu_ms: wall_ms }],
             Some(ticks) => {
-                let ticks: Vec<u64> = self.gpu.read_buffer(&ticks)?;
+                let ticks: Vec<u64> = ticks.read(bytemuck::pod_collect_to_vec)?;
                 let period = f64::from(self.gpu.queue.get_timestamp_period()) * 1e-6;
                 let ms = |pair: &[u64]| pair[1].saturating_sub(pair[0]) as f64 * period;
                 let named = ticks.chunks_exact(2).zip(self.stages);
@@ -159,17 +161,20 @@ impl Recorder<'_> {
         Ok(gpu_ms)
     }
 
-    /// Where the timestamps will stand, two a pass; `None` where there are none.
+    /// Where the timestamps can be read, two a pass; `None` where there are none.
     fn resolve(&mut self) -> Result<Option<Buffer>, GpuError> {
         let Some(queries) = &self.queries else { return Ok(None) };
         let n_queries = (2 * self.stages.len() as u32).min(queries.capacity);
         if n_queries == 0 {
             return Ok(None);
         }
+        let bytes = u64::from(n_queries) * 8;
         let usage = wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC;
-        let resolved = self.gpu.allocate("timestamps", u64::from(n_queries) * 8, usage, "")?;
+        let resolved = self.gpu.allocate("timestamps", bytes, usage, "")?;
+        let staging = self.gpu.staging(bytes)?;
         self.encoder.resolve_query_set(&queries.set, 0..n_queries, &resolved.buffer, 0);
-        Ok(Some(resolved))
+        self.encoder.copy_buffer_to_buffer(&resolved.buffer, 0, &staging.buffer, 0, bytes);
+        Ok(Some(staging))
     }
 }
 

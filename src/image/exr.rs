@@ -19,6 +19,7 @@
 
 use std::io::Cursor;
 use std::path::Path;
+use std::sync::Arc;
 
 use ::exr::block::samples::Sample;
 use ::exr::image::write::WritableImage;
@@ -133,7 +134,11 @@ pub(super) fn decode(path: &Path, bytes: &[u8]) -> Result<Image, ImageError> {
     let window = file.attributes.display_window;
     let planes = planes(path, &file)?;
     let layers = assemble(path, planes)?;
-    Ok(Image { width: window.size.width(), height: window.size.height(), layers })
+    Ok(Image {
+        width: window.size.width(),
+        height: window.size.height(),
+        layers: layers.into_iter().map(|(name, layer)| (name, Arc::new(layer))).collect(),
+    })
 }
 
 /// Refuses, by the header alone, what would take too much memory or cannot be shown.

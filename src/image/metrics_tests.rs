@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use super::*;
 
 fn image(width: usize, height: usize, pixel: impl Fn(usize, usize) -> [f32; 3]) -> Image {
@@ -79,9 +81,9 @@ fn non_finite_pixels_are_counted_and_left_out() {
     let mut reference = image(8, 8, |_, _| [1.0; 3]);
     let mut picture = image(8, 8, |_, _| [1.1; 3]);
     let clean = compare(&picture, &reference, None).unwrap();
-    picture.layers["beauty"].data[5] = f32::NAN;
-    picture.layers["beauty"].data[100] = f32::INFINITY;
-    reference.layers["beauty"].data[7] = f32::NEG_INFINITY;
+    Arc::make_mut(&mut picture.layers["beauty"]).data[5] = f32::NAN;
+    Arc::make_mut(&mut picture.layers["beauty"]).data[100] = f32::INFINITY;
+    Arc::make_mut(&mut reference.layers["beauty"]).data[7] = f32::NEG_INFINITY;
     let m = compare(&picture, &reference, None).unwrap();
     assert_eq!(m.non_finite, 3);
     near(m.mean_relative, clean.mean_relative);

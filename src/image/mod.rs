@@ -27,6 +27,7 @@ pub mod tonemap;
 
 use std::io;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use indexmap::IndexMap;
 
@@ -49,8 +50,8 @@ pub struct Image {
     pub width: usize,
     /// Rows; row 0 is the top.
     pub height: usize,
-    /// By name, in the order of their making.
-    pub layers: IndexMap<String, Layer>,
+    /// By name, in the order of their making; pictures that differ in some share the others.
+    pub layers: IndexMap<String, Arc<Layer>>,
 }
 
 /// One layer: `width * height * channels` values, row 0 on top, channels interleaved.
@@ -87,7 +88,7 @@ impl Image {
         assert!(channels == 3 || (channels == 1 && name != BEAUTY));
         assert_eq!(data.len(), self.width * self.height * channels, "{name}");
         let layer = Layer { channels, data };
-        self.layers.insert(name.to_owned(), layer);
+        self.layers.insert(name.to_owned(), Arc::new(layer));
     }
 
     /// The radiance, `width * height * 3` values.

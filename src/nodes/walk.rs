@@ -38,12 +38,19 @@ mirror! {
 pub(super) fn walk(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtlas, NodeError> {
     let atlas = TauAtlas::new(run.gpu, &medium.lattice, beams.len())?;
     let sampler = run.gpu.linear_sampler();
-    for (pack, four) in beams.chunks(atlas.pack).enumerate() {
-        for layers in Bands::new(atlas.corners[2], atlas.corners[2]) {
-            let mut recorder = run.gpu.recorder("walk to the light");
-            record(&mut recorder, run, medium, &sampler, &atlas, (pack, four), layers)?;
-            run.finish(recorder)?;
+    // Layers of corners of all packs, one after the other: a GPU has many packs done in the time of a submission.
+    let n_layers = atlas.corners[2];
+    let all = beams.len().div_ceil(atlas.pack) * n_layers;
+    for band in Bands::new(all, all) {
+        let mut recorder = run.gpu.recorder("walk to the light");
+        for (pack, four) in beams.chunks(atlas.pack).enumerate() {
+            let [start, end] =
+                [band.start, band.end].map(|at| at.saturating_sub(pack * n_layers).min(n_layers));
+            if start < end {
+                record(&mut recorder, run, medium, &sampler, &atlas, (pack, four), start..end)?;
+            }
         }
+        run.finish(recorder)?;
     }
     Ok(atlas)
 }

@@ -89,6 +89,7 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
         is_closed: medium.homogeneous.is_some(),
         beams: &of_beams,
         fits: scan::fits(run, medium, layout),
+        is_cpu: run.gpu.is_cpu(),
     };
     let (depths, decision) = planner::depths(facts, run.prune);
     let asks_for_widening = run.params.text("peak") == "widening";

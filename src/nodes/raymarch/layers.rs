@@ -1,5 +1,10 @@
 //! From the shader's pixels to a picture with layers.
 
+use std::ops::Range;
+
+use rayon::prelude::*;
+use rayon::slice::ChunksMut;
+
 use crate::image::{ALPHA, BEAUTY, DEPTH, Image};
 use crate::mirror;
 
@@ -31,10 +36,12 @@ const NAMES: [&str; 6] = [BEAUTY, "single", "forward", "residual", "surface", "e
 /// What a picture keeps of a pixel [bytes].
 pub(super) const BYTES_OF_A_PIXEL: usize = 4 * (3 * NAMES.len() + 2);
 
-/// A picture that grows by whole rows.
+/// A picture that is filled by whole rows, from above.
 pub(super) struct Growing {
     width: usize,
     height: usize,
+    /// Pixels that are there.
+    n_pixels: usize,
     colors: [Vec<f32>; 6],
     alpha: Vec<f32>,
     depth: Vec<f32>,
@@ -43,23 +50,34 @@ pub(super) struct Growing {
 impl Growing {
     pub(super) fn new(width: usize, height: usize) -> Self {
         let n = width * height;
-        let colors = NAMES.map(|_| Vec::with_capacity(3 * n));
-        Self { width, height, colors, alpha: Vec::with_capacity(n), depth: Vec::with_capacity(n) }
+        let colors = NAMES.map(|_| vec![0.0; 3 * n]);
+        Self { width, height, n_pixels: 0, colors, alpha: vec![0.0; n], depth: vec![0.0; n] }
     }
 
     /// Adds pixels below; an error tells where one is not finite, x and y.
     pub(super) fn add(&mut self, pixels: &[Pixel]) -> Result<(), (usize, usize)> {
-        if let Some(idx) = pixels.iter().position(|pixel| !pixel.is_finite()) {
-            let idx = self.alpha.len() + idx;
+        if let Some(idx) = pixels.par_iter().position_first(|pixel| !pixel.is_finite()) {
+            let idx = self.n_pixels + idx;
             return Err((idx % self.width, idx / self.width));
         }
-        for pixel in pixels {
-            for (color, [red, green, blue, _]) in self.colors.iter_mut().zip(pixel.layers()) {
-                color.extend_from_slice(&[red, green, blue]);
-            }
-            self.alpha.push(pixel.beauty[3]);
-            self.depth.push(pixel.single[3]);
-        }
+        let width = self.width;
+        let new = self.n_pixels..self.n_pixels + pixels.len();
+        let [beauty, single, forward, residual, surface, emission] =
+            self.colors.each_mut().map(|color| rows(color, 3, &new, width));
+        let (alpha, depth) = (rows(&mut self.alpha, 1, &new, width), rows(&mut self.depth, 1, &new, width));
+        // A large picture is new memory, which all cores together take faster than one.
+        (pixels.par_chunks(width), beauty, single, forward, residual, surface, emission, alpha, depth)
+            .into_par_iter()
+            .for_each(|(pixels, beauty, single, forward, residual, surface, emission, alpha, depth)| {
+                let mut colors = [beauty, single, forward, residual, surface, emission];
+                for (n, pixel) in pixels.iter().enumerate() {
+                    for (color, value) in colors.iter_mut().zip(pixel.layers()) {
+                        color[3 * n..][..3].copy_from_slice(&value[..3]);
+                    }
+                    (alpha[n], depth[n]) = (pixel.beauty[3], pixel.single[3]);
+                }
+            });
+        self.n_pixels = new.end;
         Ok(())
     }
 
@@ -75,4 +93,14 @@ impl Growing {
         }
         image
     }
+}
+
+/// The rows of these pixels in a layer.
+fn rows<'a>(
+    layer: &'a mut [f32],
+    channels: usize,
+    pixels: &Range<usize>,
+    width: usize,
+) -> ChunksMut<'a, f32> {
+    layer[channels * pixels.start..channels * pixels.end].par_chunks_mut(channels * width)
 }

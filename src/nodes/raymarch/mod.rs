@@ -184,8 +184,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         let bound = stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&pixels)]);
         recorder.dispatch(&bound, [camera.width, n_rows, 1]);
         run.finish(recorder)?;
-        let read: Vec<layers::Pixel> = gpu.read_buffer(&pixels)?;
-        picture.add(&read[..camera.width * n_rows]).map_err(|(x, y)| {
+        let add = |raw: &[u8]| picture.add(bytemuck::cast_slice(raw));
+        gpu.read_start(&pixels, (row_bytes * n_rows) as u64, add)?.map_err(|(x, y)| {
             NodeError::new(format!(
                 "pixel ({x}, {y}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity, radiance or emission_scale"
             ))

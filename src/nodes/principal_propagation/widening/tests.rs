@@ -99,7 +99,8 @@ fn agrees_with_the_oracle() {
                     // is off by 5e-4 of it, and of e^{-x} that is at most 5e-4 / e, and once more for tau.
                     let f32_error = 3e-5;
                     let tolerance = if n_beams == 1 { f32_error } else { f32_error + 2.0 * 5e-4 / 2.7 };
-                    let tolerance = filtered(gpu, tolerance);
+                    // Where filters weigh in 8 bits, twice: in the depths along the beam and in those of its peak.
+                    let tolerance = if gpu.is_cpu() { tolerance } else { 2.0 * filtered(gpu, tolerance) };
                     assert_close(&what, &found, &expected.data, tolerance, tolerance);
                 }
             }
