@@ -1,6 +1,7 @@
-// A thread: one corner of one or two beams that had texels of their own, as a texel of four.
+// A thread: one corner of a pack of beams, on its way to another atlas: of one or two beams that had texels of their
+// own and get one of four, or of a pack as it is.
 
-#import "lib/tau_4.wgsl"
+#import "lib/tau_{pack}.wgsl"
 
 struct RepackParams {
     corners: vec3u,
@@ -12,17 +13,20 @@ struct RepackParams {
 }
 
 @group(0) @binding(0) var<uniform> params: RepackParams;
-@group(1) @binding(0) var single: texture_3d<f32>;
-@group(2) @binding(0) var packed: texture_storage_3d<rgba16float, write>;
+@group(1) @binding(0) var source: texture_3d<f32>;
+@group(2) @binding(0) var packed: texture_storage_3d<{format}, write>;
+
+const FROM_SINGLES: bool = {singles};
 
 @compute @workgroup_size(8, 8, 1)
 fn repack(@builtin(global_invocation_id) id: vec3u) {
     if any(id >= params.corners) {
         return;
     }
-    var depths = vec4f(stored_tau(textureLoad(single, params.origins[0].xyz + id, 0).x), 0.0, 0.0, 0.0);
-    if params.n_beams > 1u {
-        depths.y = stored_tau(textureLoad(single, params.origins[1].xyz + id, 0).x);
+    var depths = textureLoad(source, params.origins[0].xyz + id, 0);
+    if FROM_SINGLES {
+        let second = textureLoad(source, params.origins[1].xyz + id, 0).x;
+        depths = vec4f(stored_tau(depths.x), select(0.0, stored_tau(second), params.n_beams > 1u), 0.0, 0.0);
     }
     textureStore(packed, params.origin + id, depths);
 }

@@ -39,6 +39,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("skips_dark", SWITCH),
     ("glows", SWITCH),
     ("whole", SWITCH),
+    ("singles", SWITCH),
     ("depths", SWITCH),
     ("walls", SWITCH),
     ("directions", &["4", "16", "64"]),

@@ -192,7 +192,8 @@ impl TauAtlas {
     }
 
     /// Copies a pack of this atlas of `n_beams` to another's; what has texels of its own becomes one texel of
-    /// four where the other has those.
+    /// four where the other has those. By a stage: an H200's driver (580.159) never came back from such a stage
+    /// that was followed by 48 copies.
     fn copy_pack(
         &self,
         gpu: &Gpu,
@@ -202,24 +203,22 @@ impl TauAtlas {
         into: &TauAtlas,
         into_pack: usize,
     ) -> Result<(), GpuError> {
-        let origin = into.origin(into_pack);
-        if self.pack == into.pack {
-            recorder.copy_box(&self.texture, self.origin(pack), &into.texture, origin, into.corners);
-            return Ok(());
-        }
+        let is_repacked = self.pack != into.pack;
         let beam = |n: usize| {
-            let [x, y, z] = self.origin(n.min(n_beams - 1));
+            let [x, y, z] = self.origin(if is_repacked { n.min(n_beams - 1) } else { pack });
             [x, y, z, 0]
         };
         let params = RepackParams {
             corners: into.corners.map(|n| n as u32),
             n_beams: n_beams as u32,
             origins: [beam(0), beam(1)],
-            origin,
+            origin: into.origin(into_pack),
             pad: 0,
         };
+        let [pack, format] = into.choices();
+        let stage = gpu.stage("repack", &[pack, format, ("singles", is_repacked.to_string())])?;
         let inputs = [Bind::Texture(&self.texture)];
-        let bound = gpu.stage("repack", &[])?.bind(gpu, &params, &inputs, &[Bind::Texture(&into.texture)]);
+        let bound = stage.bind(gpu, &params, &inputs, &[Bind::Texture(&into.texture)]);
         recorder.dispatch(&bound, into.corners);
         Ok(())
     }

@@ -9,12 +9,17 @@ use crate::wire::{Channels, Medium, Surfaces};
 
 use super::super::Run;
 use super::super::bands::Bands;
+use super::sources::Sources;
 use super::walls::walls;
 
 pub(super) const REMEDY: &str = "lower medium.max_resolution or medium.max_cells";
 
 /// Sweeps of one submission at the most; of as many the moments are not rounded in between.
 pub(super) const SWEEPS_AT_ONCE: usize = 4;
+
+/// Lines that a workgroup adds up, and its threads: `LINES` and `THREADS` of `line_sum.wgsl`.
+const LINES_OF_A_SUM: usize = 1024;
+const THREADS_OF_A_SUM: usize = 64;
 
 mirror! {
     /// `Channel` of `common.wgsl`.
@@ -58,6 +63,16 @@ mirror! {
         first_channel: u32,
         pad: u32,
         directions: [DirectionTexel; LineSet::MOST],
+    }
+}
+
+mirror! {
+    /// `LineSumParams` of `line_sum.wgsl`.
+    pub(super) struct LineSumParams {
+        n_lines: u32,
+        n_sums: u32,
+        pad_0: u32,
+        pad_1: u32,
     }
 }
 
@@ -273,6 +288,9 @@ pub(super) struct Level {
     batch_layers: [usize; 3],
     n_channels: usize,
     steps: Vec<Step>,
+    line_sum: Bound,
+    /// Sums of a channel's lines.
+    n_sums: usize,
     rebalance: Bound,
     keep: Bound,
 }
@@ -296,17 +314,20 @@ impl Level {
         grid: usize,
         cell_m: f64,
         [sigma_t, sources]: [&Texture; 2],
-        source_sums: &Buffer,
+        given: &Sources,
     ) -> Result<Self, GpuError> {
         let dims = sigma_t.dims().map(|n| n as usize);
         let n_cells = dims.iter().product::<usize>() as u64;
         let params = problem.level(dims, cell_m);
         let layers = problem.layers(dims);
         let n_directions = problem.directions.len();
-        let n_sums = params.n_threads as usize * n_directions;
+        let n_lines = params.n_threads as usize * n_directions;
+        let n_sums = n_lines.div_ceil(LINES_OF_A_SUM);
         let moments = gpu.texture3("moments", layers, Format::Rgba32Float, REMEDY)?;
         let balance = gpu.buffer_from("balance", &[1.0_f32; 3], REMEDY)?;
-        let line_sums = gpu.buffer("powers of lines", 8 * (n_sums * problem.n_channels) as u64, REMEDY)?;
+        let powers = |what, n: usize| gpu.buffer(what, 8 * (n * problem.n_channels) as u64, REMEDY);
+        let (line_powers, line_sums) =
+            (powers("powers of lines", n_lines)?, powers("sums of powers", n_sums)?);
         let lobe_bytes = LOBE_BYTES * n_cells * scratch.channels_per_group as u64;
         let lobes = (0..problem.n_channels / scratch.channels_per_group)
             .map(|_| gpu.buffer("lobes", lobe_bytes, REMEDY))
@@ -314,11 +335,12 @@ impl Level {
 
         let walls = problem.walls_of(grid);
         let choices = [("lobes", problem.has_lobes.to_string()), ("walls", walls.is_some().to_string())];
-        let [lobe, sweep, partial, to_lobes, to_moments, balance_stage] =
-            ["lobe", "sweep", "gather_partial", "gather_lobes", "gather_moments", "balance"]
+        let [lobe, sweep, partial, to_lobes, to_moments, line_sum, balance_stage] =
+            ["lobe", "sweep", "gather_partial", "gather_lobes", "gather_moments", "line_sum", "balance"]
                 .map(|stage| gpu.stage(&format!("isotropic_residual/{stage}"), &choices));
         let (lobe, sweep, partial) = (lobe?, sweep?, partial?);
-        let (to_lobes, to_moments, balance_stage) = (to_lobes?, to_moments?, balance_stage?);
+        let (to_lobes, to_moments) = (to_lobes?, to_moments?);
+        let (line_sum, balance_stage) = (line_sum?, balance_stage?);
         let span = |axis: fn(&Lines) -> usize| {
             problem.directions.iter().map(|direction| axis(&lines(direction, dims))).max().unwrap_or(1)
         };
@@ -362,7 +384,7 @@ impl Level {
                 };
                 let begins = batch.first % group_pairs == 0;
                 let swept: Vec<Bind> = [lobes()].into_iter().chain(walls.map(Bind::Buffer)).collect();
-                let outputs = [Bind::Buffer(&scratch.mean_radiance), Bind::Buffer(&line_sums)];
+                let outputs = [Bind::Buffer(&scratch.mean_radiance), Bind::Buffer(&line_powers)];
                 Step {
                     start: begins.then(|| {
                         let [a, b] = fields();
@@ -381,15 +403,31 @@ impl Level {
                 entering: entering(problem, dims, cell_m) as f32,
                 rebalance,
                 n_sums: n_sums as u32,
-                n_sources: (source_sums.bytes() as usize / 4 / problem.n_channels) as u32,
+                n_sources: given.n_sums as u32,
             };
-            let inputs = [Bind::Buffer(&line_sums), Bind::Buffer(source_sums)];
+            let inputs = [Bind::Buffer(&line_sums), Bind::Buffer(&given.sums)];
             balance_stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&balance)])
         };
         let (rebalance, keep) = (bind_balance(1), bind_balance(0));
+        let params_of_sums =
+            LineSumParams { n_lines: n_lines as u32, n_sums: n_sums as u32, pad_0: 0, pad_1: 0 };
+        let line_sum =
+            line_sum.bind(gpu, &params_of_sums, &[Bind::Buffer(&line_powers)], &[Bind::Buffer(&line_sums)]);
         let batch_layers = [dims[0], dims[1], dims[2] * scratch.channels_per_group];
         let n_channels = problem.n_channels;
-        Ok(Self { params, moments, balance, layers, batch_layers, n_channels, steps, rebalance, keep })
+        Ok(Self {
+            params,
+            moments,
+            balance,
+            layers,
+            batch_layers,
+            n_channels,
+            steps,
+            line_sum,
+            n_sums,
+            rebalance,
+            keep,
+        })
     }
 
     /// Cells of all channels.
@@ -414,6 +452,7 @@ impl Level {
                 recorder.dispatch(&step.sweep, step.threads);
                 if step.completes {
                     // Channels that are still to come get a stale factor here, and theirs before it is read.
+                    recorder.dispatch(&self.line_sum, [self.n_sums * THREADS_OF_A_SUM, 1, self.n_channels]);
                     recorder.dispatch(balance, [1, 1, self.n_channels]);
                 }
                 recorder.dispatch(&step.gather[into], self.batch_layers);

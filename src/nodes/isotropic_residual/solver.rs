@@ -80,7 +80,7 @@ fn levels(
     let gpu = run.gpu;
     let mut cell_m = medium.lattice.cell_m;
     let fields = [&*medium.sigma_t, &sources.field];
-    let mut levels = vec![Level::new(gpu, problem, scratch, 0, cell_m, fields, &sources.sums)?];
+    let mut levels = vec![Level::new(gpu, problem, scratch, 0, cell_m, fields, sources)?];
     let mut coarser: Option<[Texture; 2]> = None;
     for half in grids(medium.lattice.dims).into_iter().skip(1) {
         let [sigma_t, field] = match &coarser {
@@ -92,15 +92,7 @@ fn levels(
             restrict(run, field, problem.layers(half), Format::Rgba32Float)?,
         ];
         cell_m *= 2.0;
-        levels.push(Level::new(
-            gpu,
-            problem,
-            scratch,
-            levels.len(),
-            cell_m,
-            [&next[0], &next[1]],
-            &sources.sums,
-        )?);
+        levels.push(Level::new(gpu, problem, scratch, levels.len(), cell_m, [&next[0], &next[1]], sources)?);
         coarser = Some(next);
     }
     Ok(levels)

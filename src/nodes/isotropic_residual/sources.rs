@@ -23,11 +23,15 @@ mirror! {
     }
 }
 
+/// Columns of cells that a workgroup adds up, along an axis: `EDGE` of `source_sum.wgsl`.
+const COLUMNS_OF_A_SUM: usize = 8;
+
 /// Q0 and Q1 [W/m³] on the finest grid.
 pub(super) struct Sources {
     pub(super) field: Texture,
-    /// Powers of the columns of cells, per channel; their sum is the power of all sources.
+    /// Powers of parts of the grid, so many of each channel; their sum is the power of all its sources.
     pub(super) sums: Buffer,
+    pub(super) n_sums: usize,
 }
 
 pub(super) fn sources(
@@ -82,10 +86,11 @@ pub(super) fn with_sums(
 ) -> Result<Sources, NodeError> {
     let gpu = run.gpu;
     let columns = [level.dims[0] as usize, level.dims[1] as usize, problem.n_channels];
-    let sums = gpu.buffer("powers of sources", 4 * columns.iter().product::<usize>() as u64, REMEDY)?;
+    let n_sums = columns[..2].iter().map(|n| n.div_ceil(COLUMNS_OF_A_SUM)).product();
+    let sums = gpu.buffer("powers of sources", 4 * (n_sums * problem.n_channels) as u64, REMEDY)?;
     let stage = gpu.stage("isotropic_residual/source_sum", &[])?;
     let mut recorder = gpu.recorder("sources");
     recorder.dispatch(&stage.bind(gpu, level, &[Bind::Texture(&field)], &[Bind::Buffer(&sums)]), columns);
     run.finish(recorder)?;
-    Ok(Sources { field, sums })
+    Ok(Sources { field, sums, n_sums })
 }

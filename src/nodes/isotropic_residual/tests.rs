@@ -1,7 +1,9 @@
 use glam::DVec3;
 use serde_json::{Value as Json, json};
 
-use super::level::{BalanceParams, BatchParams, ChannelTexel, DirectionTexel, LevelParams, Problem};
+use super::level::{
+    BalanceParams, BatchParams, ChannelTexel, DirectionTexel, LevelParams, LineSumParams, Problem,
+};
 use super::oracle::{Level, Options, Quality, Scheme, solve};
 use super::plan::plan;
 use super::sources::SourceParams;
@@ -304,7 +306,7 @@ fn flame_without_smoke_shines() {
         let field = gpu.texture3_from("sources", dims, Format::Rgba32Float, &texels, "").unwrap();
         let power = (q0.data.iter().sum::<f64>() * volume) as f32;
         let sums = gpu.buffer_from("powers of sources", &[power, 0.0, 0.0, 0.0], "").unwrap();
-        let (sources, effort) = (sources::Sources { field, sums }, plan(run).unwrap().effort);
+        let (sources, effort) = (sources::Sources { field, sums, n_sums: 1 }, plan(run).unwrap().effort);
         solver::solve(run, medium, &sources, &problem, effort, channels, 1 << 30).unwrap()
     });
     let sources = oracle::Sources { q0, ..oracle::Sources::new(dims, 0.0) };
@@ -398,6 +400,7 @@ fn layouts_are_those_of_the_shaders() {
     assert_layout::<LevelParams>("isotropic_residual/sweep.wgsl", "Level", &lobes);
     assert_layout::<DirectionTexel>("isotropic_residual/sweep.wgsl", "Direction", &lobes);
     assert_layout::<BatchParams>("isotropic_residual/sweep.wgsl", "Batch", &lobes);
+    assert_layout::<LineSumParams>("isotropic_residual/line_sum.wgsl", "LineSumParams", &[]);
     assert_layout::<BalanceParams>("isotropic_residual/balance.wgsl", "BalanceParams", &[]);
     assert_layout::<SourceParams>(
         "isotropic_residual/sources.wgsl",

@@ -186,6 +186,30 @@ fn depths_beyond_half_floats_end_at_their_largest() {
 }
 
 #[test]
+fn merged_packs_are_those_of_the_parts() {
+    let Some(gpu) = gpu() else { return };
+    let scene = Scene::new([9, 6, 7], Filling::Random, 3.0);
+    let medium = scene.medium(gpu);
+    let lattice = &medium.get::<Medium>().lattice;
+    let along = [
+        [0.3, 0.2, 0.9],
+        [-0.8, 0.5, 0.1],
+        [0.1, -1.0, 0.3],
+        [0.0, 0.0, -1.0],
+        [1.0, 0.2, 0.2],
+        [0.4, 0.6, 0.5],
+    ];
+    let suns = along.map(|direction| sun(DVec3::from_array(direction), 1.0));
+    let [one, other, six] =
+        [&suns[..1], &suns[1..2], &suns[..]].map(|suns| scene.propagate(gpu, &medium, suns, [0.0; 3]));
+    // Packs are copied as they are: the second part's begin where the first one's has been filled up.
+    let merged = Beams::merge(gpu, lattice, &[one.get(), six.get()]).unwrap();
+    assert_eq!(taus(gpu, &merged)[4..10], taus(gpu, six.get()));
+    let two = Beams::merge(gpu, lattice, &[one.get(), other.get()]).unwrap();
+    assert_eq!(taus(gpu, &two), [taus(gpu, one.get()), taus(gpu, other.get())].concat());
+}
+
+#[test]
 fn layouts_are_those_of_the_shader() {
     const PACKED: [(&str, &str); 2] = [("pack", "4"), ("format", "rgba16float")];
     assert_layout::<WalkParams>("walk.wgsl", "WalkParams", &PACKED);
