@@ -37,6 +37,8 @@ pub struct Bvh {
 /// Triangles of a leaf, at most.
 const LEAF: usize = 4;
 const BINS: usize = 16;
+/// Trees of more triangles than this grow beside each other.
+const ALONE: usize = 1 << 12;
 /// By how much of its distance from the origin a box is larger than what it holds: 16 ulps.
 const MARGIN: f32 = 16.0 * f32::EPSILON;
 
@@ -86,6 +88,15 @@ impl Bvh {
         bvh
     }
 
+    /// Adds a tree after the nodes that are there.
+    fn append(&mut self, other: &Self) {
+        let (n_nodes, n_triangles) = (self.nodes.len() as u32, self.order.len() as u32);
+        let moved =
+            |node: &Node| Node { skip: node.skip + n_nodes, first: node.first + n_triangles, ..*node };
+        self.nodes.extend(other.nodes.iter().map(moved));
+        self.order.extend(&other.order);
+    }
+
     fn add(&mut self, items: &mut [Item]) {
         let bounds = items.iter().fold(Bounds::EMPTY, |all, item| all.with(item.bounds));
         let margin = MARGIN * bounds.low.abs().max(bounds.high.abs());
@@ -103,8 +114,19 @@ impl Bvh {
         } else {
             let n_left = divide(items);
             let (left, right) = items.split_at_mut(n_left);
-            self.add(left);
-            self.add(right);
+            if left.len().min(right.len()) > ALONE {
+                let grown = |items: &mut [Item]| {
+                    let mut tree = Self::default();
+                    tree.add(items);
+                    tree
+                };
+                let (left, right) = rayon::join(|| grown(left), || grown(right));
+                self.append(&left);
+                self.append(&right);
+            } else {
+                self.add(left);
+                self.add(right);
+            }
         }
         self.nodes[idx].skip = self.nodes.len() as u32;
     }
@@ -129,14 +151,20 @@ fn divide(items: &mut [Item]) -> usize {
             *bounds = bounds.with(item.bounds);
             *n += 1;
         }
-        for cut in 1..BINS {
-            let side = |bins: &[(Bounds, usize)]| {
-                bins.iter().fold((Bounds::EMPTY, 0), |(all, n), (bounds, m)| (all.with(*bounds), n + m))
-            };
-            let ((left, n_left), (right, n_right)) = (side(&bins[..cut]), side(&bins[cut..]));
+        let grow = |side: &mut (Bounds, usize), (bounds, n): (Bounds, usize)| {
+            *side = (side.0.with(bounds), side.1 + n);
+            Some(*side)
+        };
+        // What stands before each cut, and what from it on.
+        let mut rights = [(Bounds::EMPTY, 0); BINS];
+        let from_the_end = bins.iter().rev().copied().scan((Bounds::EMPTY, 0), grow);
+        rights.iter_mut().rev().zip(from_the_end).for_each(|(right, side)| *right = side);
+        let lefts = bins.iter().copied().scan((Bounds::EMPTY, 0), grow);
+        for (before, ((left, n_left), (right, n_right))) in lefts.zip(rights.into_iter().skip(1)).enumerate()
+        {
             let cost = left.area() * n_left as f32 + right.area() * n_right as f32;
             if n_left > 0 && n_right > 0 && best.is_none_or(|(least, ..)| cost < least) {
-                best = Some((cost, axis, cut));
+                best = Some((cost, axis, before + 1));
             }
         }
     }

@@ -280,7 +280,7 @@ fn walked(bvh: &Bvh, triangles: &[[DVec3; 3]], ray: Ray) -> (Option<f64>, usize)
 #[test]
 fn the_tree_finds_what_trying_all_finds() {
     let mut random = Random(11);
-    for (n, size) in [(1, 1.0), (4, 0.5), (5, 0.5), (300, 0.1), (2000, 0.02)] {
+    for (n, size) in [(1, 1.0), (4, 0.5), (5, 0.5), (300, 0.1), (2000, 0.02), (20_000, 5e-3)] {
         let triangles = soup(&mut random, n, size);
         let singles: Vec<[Vec3; 3]> = triangles.iter().map(|t| t.map(|p| p.as_vec3())).collect();
         let bvh = Bvh::new(&singles);
