@@ -8,7 +8,7 @@
 
 @group(1) @binding(0) var<storage, read> lobes: array<vec4u>;
 @group(2) @binding(0) var<storage, read_write> mean_radiance: array<f32>;
-@group(2) @binding(1) var<storage, read_write> line_sums: array<vec2f>;
+@group(2) @binding(1) var<storage, read_write> line_powers: array<vec2f>;
 
 // Whether surfaces stand between cells.
 const HAS_WALLS: bool = {walls};
@@ -112,5 +112,5 @@ fn isotropic_residual_sweep(@builtin(global_invocation_id) id: vec3u) {
     // Powers of this line: of its end and its wraps through the tube h^3 / s, and of what it loses inside.
     let cell_volume = level.cell_m * level.cell_m * level.cell_m;
     let absorbed_power = absorbed * level.channels[c].absorb;
-    line_sums[pair * level.n_threads + id.y * u32(n_u) + id.x] = direction.weight * cell_volume * vec2f(leak / s, absorbed_power);
+    line_powers[pair * level.n_threads + id.y * u32(n_u) + id.x] = direction.weight * cell_volume * vec2f(leak / s, absorbed_power);
 }

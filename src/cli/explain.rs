@@ -20,7 +20,8 @@ use super::scene::{read, refuse_problems};
 /// Show what a graph would do: what the scene requires, what is left out and why, sizes and times.
 ///
 /// Volumes, media and lights are read, which decides the rest; propagations, residual and march only say what
-/// they would do. Times of what was read are measured, others predicted, without the compiling of shaders.
+/// they would do. Times of what was read are measured, others predicted, without the compiling of shaders; on a GPU
+/// they are its own, without what the CPU does meanwhile.
 #[derive(clap::Args)]
 pub struct Args {
     /// The graph, a JSON file.
@@ -72,6 +73,8 @@ pub fn run(args: &Args) -> anyhow::Result<ExitCode> {
 struct GraphJson<'a> {
     graph: String,
     adapter: String,
+    #[serde(skip)]
+    is_cpu: bool,
     /// Read and written together.
     copy_gb_per_s: f64,
     /// Of all that was read and is foretold; nodes whose `ms` is null are not in it.
@@ -126,6 +129,7 @@ impl<'a> GraphJson<'a> {
         Self {
             graph,
             adapter,
+            is_cpu,
             copy_gb_per_s,
             ms: explained.nodes.iter().filter_map(|node| node.ms).sum(),
             nodes: nodes.collect(),
@@ -184,7 +188,8 @@ fn describe(found: &GraphJson) -> String {
     let unknown: Vec<&str> =
         found.nodes.iter().filter(|node| node.ms.is_none()).map(|node| node.name).collect();
     let but = if unknown.is_empty() { String::new() } else { format!(", without {}", unknown.join(", ")) };
-    let _ = writeln!(text, "\nabout {}{but}", time(found.ms));
+    let whose = if found.is_cpu { "" } else { ", of what would run the GPU's own time" };
+    let _ = writeln!(text, "\nabout {}{but}{whose}", time(found.ms));
     text
 }
 

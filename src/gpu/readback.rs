@@ -12,20 +12,23 @@ impl Gpu {
     /// # Errors
     /// [`GpuError::OutOfMemory`]; [`GpuError::Device`] where the device was lost.
     pub fn read_buffer<T: bytemuck::Pod>(&self, buffer: &Buffer) -> Result<Vec<T>, GpuError> {
-        self.read_start(buffer, buffer.bytes(), bytemuck::pod_collect_to_vec)
+        self.read_prefix(buffer, buffer.bytes(), bytemuck::pod_collect_to_vec)
     }
 
-    /// What `take` makes of the first `bytes` of a buffer, a multiple of 4, where they lie: a large picture is not
-    /// copied once more.
+    /// What `take` makes of the first `bytes` of a buffer, where they lie: a large picture is not copied once more.
     ///
     /// # Errors
     /// As [`Self::read_buffer`].
-    pub fn read_start<T>(
+    ///
+    /// # Panics
+    /// If `bytes` are more than there are, or no multiple of 4.
+    pub fn read_prefix<T>(
         &self,
         buffer: &Buffer,
         bytes: u64,
         take: impl FnOnce(&[u8]) -> T,
     ) -> Result<T, GpuError> {
+        assert!(bytes <= buffer.bytes() && bytes.is_multiple_of(4), "{bytes} bytes");
         let copy = |encoder: &mut wgpu::CommandEncoder, staging: &wgpu::Buffer| {
             encoder.copy_buffer_to_buffer(&buffer.buffer, 0, staging, 0, bytes);
         };

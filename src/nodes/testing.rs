@@ -31,7 +31,12 @@ pub use fire::{Fire, volume};
 /// A tolerance for what was made with filtered textures: software drivers weigh in f32, others with
 /// 8 bits, an error of half a step of 1/256 of the difference of two neighbors.
 pub fn filtered(gpu: &Gpu, f32_tolerance: f64) -> f64 {
-    if gpu.is_cpu() { f32_tolerance } else { f32_tolerance.max(1.0 / 256.0) }
+    filtered_times(gpu, f32_tolerance, 1.0)
+}
+
+/// The same where what was filtered enters so many times, or with such a power.
+pub fn filtered_times(gpu: &Gpu, f32_tolerance: f64, times: f64) -> f64 {
+    if gpu.is_cpu() { f32_tolerance } else { f32_tolerance.max(times / 256.0) }
 }
 
 /// Runs a node by its id.

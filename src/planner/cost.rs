@@ -3,8 +3,8 @@
 //!
 //! Ratios were measured on Mesa's lavapipe with two cores and on an NVIDIA H200 (`cargo bench --bench picture` prints
 //! them for a graph). They hold what bytes do not say, such as arithmetic and what stays in caches, so that they are
-//! those of one kind of device; another GPU than that one has others. How far off predictions are stands in
-//! BENCHMARKS.md.
+//! those of one kind of device; another GPU than that one has others. How far off predictions of software drivers
+//! are stands in BENCHMARKS.md; of GPUs that is not known yet.
 
 use crate::graph::StageWork;
 

@@ -34,8 +34,8 @@ pub struct Explanation {
     pub kind: &'static str,
     /// Whether it was run to know this; else it was foretold.
     pub was_run: bool,
-    /// The wall clock of that run, 0 where its result was there already; else the prediction. `None` where
-    /// nobody knows, in ms.
+    /// The wall clock of that run, 0 where its result was there already; else the prediction, which is the device's own
+    /// time. `None` where nobody knows, in ms.
     pub ms: Option<f64>,
     /// Of its outputs; `None` where nobody knows in bytes.
     pub bytes: Option<u64>,

@@ -215,8 +215,8 @@ impl TauAtlas {
             origin: into.origin(into_pack),
             pad: 0,
         };
-        let [pack, format] = into.choices();
-        let stage = gpu.stage("repack", &[pack, format, ("singles", is_repacked.to_string())])?;
+        let [of_texels, format] = into.choices();
+        let stage = gpu.stage("repack", &[of_texels, format, ("singles", is_repacked.to_string())])?;
         let inputs = [Bind::Texture(&self.texture)];
         let bound = stage.bind(gpu, &params, &inputs, &[Bind::Texture(&into.texture)]);
         recorder.dispatch(&bound, into.corners);

@@ -17,9 +17,12 @@ pub(super) const REMEDY: &str = "lower medium.max_resolution or medium.max_cells
 /// Sweeps of one submission at the most; of as many the moments are not rounded in between.
 pub(super) const SWEEPS_AT_ONCE: usize = 4;
 
-/// Lines that a workgroup adds up, and its threads: `LINES` and `THREADS` of `line_sum.wgsl`.
+/// Lines that a workgroup adds up, at least.
 const LINES_OF_A_SUM: usize = 1024;
-const THREADS_OF_A_SUM: usize = 64;
+/// Workgroups along an axis that every device can dispatch.
+const MOST_SUMS: usize = 65_535;
+/// `THREADS` of `line_sum.wgsl`.
+pub(super) const THREADS_OF_A_SUM: usize = 64;
 
 mirror! {
     /// `Channel` of `common.wgsl`.
@@ -71,8 +74,8 @@ mirror! {
     pub(super) struct LineSumParams {
         n_lines: u32,
         n_sums: u32,
-        pad_0: u32,
-        pad_1: u32,
+        lines_per_sum: u32,
+        pad: u32,
     }
 }
 
@@ -314,7 +317,7 @@ impl Level {
         grid: usize,
         cell_m: f64,
         [sigma_t, sources]: [&Texture; 2],
-        given: &Sources,
+        finest: &Sources,
     ) -> Result<Self, GpuError> {
         let dims = sigma_t.dims().map(|n| n as usize);
         let n_cells = dims.iter().product::<usize>() as u64;
@@ -322,7 +325,8 @@ impl Level {
         let layers = problem.layers(dims);
         let n_directions = problem.directions.len();
         let n_lines = params.n_threads as usize * n_directions;
-        let n_sums = n_lines.div_ceil(LINES_OF_A_SUM);
+        let lines_per_sum = lines_per_sum(n_lines);
+        let n_sums = n_lines.div_ceil(lines_per_sum);
         let moments = gpu.texture3("moments", layers, Format::Rgba32Float, REMEDY)?;
         let balance = gpu.buffer_from("balance", &[1.0_f32; 3], REMEDY)?;
         let powers = |what, n: usize| gpu.buffer(what, 8 * (n * problem.n_channels) as u64, REMEDY);
@@ -403,14 +407,18 @@ impl Level {
                 entering: entering(problem, dims, cell_m) as f32,
                 rebalance,
                 n_sums: n_sums as u32,
-                n_sources: given.n_sums as u32,
+                n_sources: finest.n_sums as u32,
             };
-            let inputs = [Bind::Buffer(&line_sums), Bind::Buffer(&given.sums)];
+            let inputs = [Bind::Buffer(&line_sums), Bind::Buffer(&finest.sums)];
             balance_stage.bind(gpu, &params, &inputs, &[Bind::Buffer(&balance)])
         };
         let (rebalance, keep) = (bind_balance(1), bind_balance(0));
-        let params_of_sums =
-            LineSumParams { n_lines: n_lines as u32, n_sums: n_sums as u32, pad_0: 0, pad_1: 0 };
+        let params_of_sums = LineSumParams {
+            n_lines: n_lines as u32,
+            n_sums: n_sums as u32,
+            lines_per_sum: lines_per_sum as u32,
+            pad: 0,
+        };
         let line_sum =
             line_sum.bind(gpu, &params_of_sums, &[Bind::Buffer(&line_powers)], &[Bind::Buffer(&line_sums)]);
         let batch_layers = [dims[0], dims[1], dims[2] * scratch.channels_per_group];
@@ -461,6 +469,11 @@ impl Level {
         }
         Ok(())
     }
+}
+
+/// Lines of a sum, so many that no device has too many sums.
+pub(super) fn lines_per_sum(n_lines: usize) -> usize {
+    n_lines.div_ceil(MOST_SUMS).max(LINES_OF_A_SUM)
 }
 
 fn direction_texel(directions: &[LineDirection], n: usize) -> DirectionTexel {

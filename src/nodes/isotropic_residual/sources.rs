@@ -24,7 +24,7 @@ mirror! {
 }
 
 /// Columns of cells that a workgroup adds up, along an axis: `EDGE` of `source_sum.wgsl`.
-const COLUMNS_OF_A_SUM: usize = 8;
+pub(super) const COLUMNS_OF_A_SUM: usize = 8;
 
 /// Q0 and Q1 [W/m³] on the finest grid.
 pub(super) struct Sources {

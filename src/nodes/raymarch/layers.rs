@@ -37,7 +37,7 @@ const NAMES: [&str; 6] = [BEAUTY, "single", "forward", "residual", "surface", "e
 pub(super) const BYTES_OF_A_PIXEL: usize = 4 * (3 * NAMES.len() + 2);
 
 /// A picture that is filled by whole rows, from above.
-pub(super) struct Growing {
+pub(super) struct Filling {
     width: usize,
     height: usize,
     /// Pixels that are there.
@@ -47,7 +47,7 @@ pub(super) struct Growing {
     depth: Vec<f32>,
 }
 
-impl Growing {
+impl Filling {
     pub(super) fn new(width: usize, height: usize) -> Self {
         let n = width * height;
         let colors = NAMES.map(|_| vec![0.0; 3 * n]);
@@ -83,6 +83,7 @@ impl Growing {
 
     /// The picture, once all rows are there.
     pub(super) fn finish(self) -> Image {
+        assert_eq!(self.n_pixels, self.width * self.height, "rows are missing");
         let mut colors = NAMES.into_iter().zip(self.colors);
         let beauty = colors.next().map(|(_, data)| data).unwrap_or_default();
         let mut image = Image::new(self.width, self.height, beauty);

@@ -176,7 +176,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let row_rays = camera.width * (params.n_sub * params.n_sub) as usize;
     let band = (BAND_RAYS / row_rays).clamp(1, camera.height);
     let pixels = gpu.buffer("a band of pixels", (row_bytes * band) as u64, "lower camera.width")?;
-    let mut picture = layers::Growing::new(camera.width, camera.height);
+    let mut picture = layers::Filling::new(camera.width, camera.height);
     for rows in Bands::new(camera.height, band) {
         let n_rows = rows.len();
         let params = MarchParams { row: rows.start as u32, n_rows: n_rows as u32, ..params };
@@ -185,7 +185,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         recorder.dispatch(&bound, [camera.width, n_rows, 1]);
         run.finish(recorder)?;
         let add = |raw: &[u8]| picture.add(bytemuck::cast_slice(raw));
-        gpu.read_start(&pixels, (row_bytes * n_rows) as u64, add)?.map_err(|(x, y)| {
+        gpu.read_prefix(&pixels, (row_bytes * n_rows) as u64, add)?.map_err(|(x, y)| {
             NodeError::new(format!(
                 "pixel ({x}, {y}) is not finite: the light is too bright for 32-bit numbers, lower its irradiance, intensity, radiance or emission_scale"
             ))

@@ -206,7 +206,14 @@ fn merged_packs_are_those_of_the_parts() {
     let merged = Beams::merge(gpu, lattice, &[one.get(), six.get()]).unwrap();
     assert_eq!(taus(gpu, &merged)[4..10], taus(gpu, six.get()));
     let two = Beams::merge(gpu, lattice, &[one.get(), other.get()]).unwrap();
-    assert_eq!(taus(gpu, &two), [taus(gpu, one.get()), taus(gpu, other.get())].concat());
+    let singles = [taus(gpu, one.get()), taus(gpu, other.get())].concat();
+    assert_eq!(taus(gpu, &two), singles);
+    // Single ones become a pack, in half floats.
+    let merged = taus(gpu, &Beams::merge(gpu, lattice, &[&two, six.get()]).unwrap());
+    for (found, single) in merged.iter().zip(&singles) {
+        assert_close("packed", &found.data, &single.data, HALF, HALF_MIN);
+    }
+    assert_eq!(merged[4..10], taus(gpu, six.get()));
 }
 
 #[test]

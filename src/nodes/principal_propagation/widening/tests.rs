@@ -10,7 +10,8 @@ use crate::graph::{PortType, Value};
 use crate::light::{Ordinate, Ordinates};
 use crate::nodes::oracle_scene::corners::HIDDEN;
 use crate::nodes::testing::{
-    Filling, Scene, assert_close, assert_layout, filtered, flat, full_output, gpu, output, run, states, taus,
+    Filling, Scene, assert_close, assert_layout, filtered_times, flat, full_output, gpu, output, run, states,
+    taus,
 };
 use crate::volume::field::Field;
 use crate::wire::Beams;
@@ -100,7 +101,7 @@ fn agrees_with_the_oracle() {
                     let f32_error = 3e-5;
                     let tolerance = if n_beams == 1 { f32_error } else { f32_error + 2.0 * 5e-4 / 2.7 };
                     // Where filters weigh in 8 bits, twice: in the depths along the beam and in those of its peak.
-                    let tolerance = if gpu.is_cpu() { tolerance } else { 2.0 * filtered(gpu, tolerance) };
+                    let tolerance = filtered_times(gpu, tolerance, 2.0);
                     assert_close(&what, &found, &expected.data, tolerance, tolerance);
                 }
             }
