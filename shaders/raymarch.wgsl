@@ -107,6 +107,8 @@ struct Pixel {
 @group(1) @binding(18) var radial: texture_3d<f32>;
 @group(1) @binding(19) var<storage, read> radial_lights: array<RadialLight>;
 @group(1) @binding(20) var sums: texture_3d<f32>;
+@group(1) @binding(21) var ahead: texture_3d<f32>;
+@group(1) @binding(22) var backward: texture_2d<f32>;
 @group(2) @binding(0) var<storage, read_write> pixels: array<Pixel>;
 
 // Where less than this is left of a ray it ends.
@@ -133,6 +135,8 @@ const HAS_GATHERED: bool = {gathered};
 const HAS_SHADOWS: bool = {shadows};
 const HAS_RADIAL: bool = {radial};
 const HAS_WIDENING: bool = {widening};
+// Whether light goes to and fro along parallel beams.
+const RETURNS: bool = {returns};
 const HAS_EMISSION: bool = {emission};
 const HAS_BEAMS: bool = {beams};
 // Whether the beams were gathered at corners for this view.

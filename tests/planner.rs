@@ -209,6 +209,27 @@ fn backward_scattering_has_no_peak() {
 }
 
 #[test]
+fn backward_scattering_goes_to_and_fro() {
+    let Some(mut session) = common::session() else { return };
+    let decided = |graph: &Document, session: &mut Session| {
+        let made = make(session, graph, true);
+        let found = made.decisions.iter().find(|(_, decision)| decision.rule == "backward_peak");
+        found.map(|(node, decision)| (node.clone(), decision.kept))
+    };
+    assert_eq!(decided(&cloud(&["medium.g=-0.5"]), &mut session), Some(("beams".to_owned(), true)));
+    assert_eq!(decided(&cloud(&["medium.g=0.5"]), &mut session), None);
+    // Surfaces are lit by what a beam has lost, not by what comes back along it.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("floor.obj");
+    std::fs::write(&path, "v -3 -2 -3\nv 3 -2 -3\nv 0 -2 3\nf 1 2 3\n").unwrap();
+    let with_floor = CLOUD
+        .replace(r#""march": {"#, &format!(r#""floor": {{ "type": "mesh", "path": {path:?} }}, "march": {{"#))
+        .replace(r#""wires": ["#, r#""wires": [ "floor.surface -> beams.surfaces","#);
+    let graph = changed(&with_floor, &["medium.g=-0.5"]);
+    assert_eq!(decided(&graph, &mut session), Some(("beams".to_owned(), false)));
+}
+
+#[test]
 fn isotropic_scattering_needs_no_directions() {
     let Some(mut session) = common::session() else { return };
     let both = both(&mut session, &cloud(&["medium.g=0"]), "residual", "lobes");

@@ -31,6 +31,7 @@ const CHOICES: &[(&str, &[&str])] = &[
     ("radial", SWITCH),
     ("narrow", SWITCH),
     ("emission", SWITCH),
+    ("returns", SWITCH),
     ("beams", SWITCH),
     ("sums", SWITCH),
     ("grey", SWITCH),

@@ -3,6 +3,7 @@
 #import "isotropic_residual/common.wgsl"
 #import "isotropic_residual/cell_mean.wgsl"
 #import "lib/beam.wgsl"
+#import "lib/streams.wgsl"
 #import "lib/phase.wgsl"
 
 struct SourceParams {
@@ -19,8 +20,12 @@ struct SourceParams {
 @group(1) @binding(1) var tau: texture_3d<f32>;
 @group(1) @binding(2) var<storage, read> beams: array<Beam>;
 @group(1) @binding(3) var emission: texture_3d<f32>;
+@group(1) @binding(4) var ahead: texture_3d<f32>;
 @group(2) @binding(0) var sources: texture_storage_3d<rgba32float, write>;
 
+// Whether light goes to and fro along parallel beams (optics/backward.rs); nothing is scaled then, so that g* of the
+// level is g and sigma_s* / sigma_t the albedo.
+const RETURNS: bool = {returns};
 const HAS_EMISSION: bool = {emission};
 // Whether k is the same in all channels.
 const IS_GREY: bool = {grey};
@@ -43,6 +48,15 @@ fn mean_inverse_square(cell: vec3f, position: vec3f, cell_m: f32) -> f32 {
     return sum / (512.0 * cell_m * cell_m);
 }
 
+// Mean of the depths at the corners that light reaches.
+fn mean_depth(depths: array<f32, 8>) -> f32 {
+    var sum = vec2f(0.0);
+    for (var n = 0u; n < 8u; n += 1u) {
+        sum += select(vec2f(depths[n], 1.0), vec2f(0.0), is_hidden(depths[n]));
+    }
+    return sum.x / max(sum.y, 1.0);
+}
+
 @compute @workgroup_size(8, 8, 1)
 fn isotropic_residual_sources(@builtin(global_invocation_id) thread: vec3u) {
     let level = params.level;
@@ -57,8 +71,13 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) thread: vec3u) {
         for (var first = 0u; first < params.n_beams; first += PACK) {
             let origin = pack_origin(first / PACK, corners, params.packs_per_column) + id;
             var depths: array<vec4f, 8>;
+            var depths_ahead: array<vec4f, 8>;
             for (var n = 0u; n < 8u; n += 1u) {
-                depths[n] = textureLoad(tau, origin + vec3u(n & 1u, (n >> 1u) & 1u, n >> 2u), 0);
+                let corner = origin + vec3u(n & 1u, (n >> 1u) & 1u, n >> 2u);
+                depths[n] = textureLoad(tau, corner, 0);
+                if RETURNS {
+                    depths_ahead[n] = textureLoad(ahead, corner, 0);
+                }
             }
             for (var n = 0u; n < min(PACK, params.n_beams - first); n += 1u) {
                 let beam = beams[first + n];
@@ -68,6 +87,22 @@ fn isotropic_residual_sources(@builtin(global_invocation_id) thread: vec3u) {
                 }
                 var direction = beam.place.xyz;
                 var axis = largest_axis(direction);
+                if RETURNS && beam.place.w <= 0.0 {
+                    var one_ahead: array<f32, 8>;
+                    for (var m = 0u; m < 8u; m += 1u) {
+                        one_ahead[m] = depths_ahead[m][n];
+                    }
+                    let g = level.g_star;
+                    let passed = mean_depth(one);
+                    let before = mean_depth(one_ahead);
+                    for (var c = 0u; c < level.n_channels; c += 1u) {
+                        let both = streams(g, level.channels[c].scatter, passed, before);
+                        let leaves = (1.0 - g) * (1.0 + g) * cell_mean(one, both.kappa, axis);
+                        let along = g / (1.0 - g) * beam.power.w * (both.on - both.back) * direction;
+                        totals[c] += beam.power[c] * leaves * vec4f(both.on + both.back, along);
+                    }
+                    continue;
+                }
                 var spreading = 1.0;
                 if beam.place.w > 0.0 {
                     let line = vec3f(id) - beam.place.xyz;

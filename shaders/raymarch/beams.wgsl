@@ -2,6 +2,7 @@
 // the forward peak adds to it. Beam by beam, or from their sums at corners (raymarch/gather.wgsl).
 
 #import "raymarch/towards_eye.wgsl"
+#import "raymarch/to_and_fro.wgsl"
 
 // Radius of the ball that has the volume of a cube, over the cube's edge.
 const BALL_PER_EDGE: f32 = 0.62;
@@ -66,6 +67,10 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
                 stars = textureSampleLevel(star, linear_clamp, (origin + inside) / tau_size, 0.0);
             }
         }
+        var aheads = vec4f(0.0);
+        if RETURNS && HAS_VOXELS {
+            aheads = textureSampleLevel(ahead, linear_clamp, (origin + inside) / tau_size, 0.0);
+        }
         for (var m = 0u; m < min(PACK, n_beams() - first); m += 1u) {
             let beam = beams[first + m];
             var travel = beam.place.xyz;
@@ -99,6 +104,17 @@ fn scatter_beams(segment: Segment, p: vec3f, direction: vec3f) -> Scattered {
                 scattered.forward += power * deflected * phases.peak;
             }
             scattered.single += power * unscattered * phases.single;
+            if RETURNS && beam.place.w <= 0.0 {
+                var depth_ahead = aheads[m];
+                if !HAS_VOXELS {
+                    let way = ray_shape(params.shape, p, travel);
+                    depth_ahead = params.shape.sigma_t * max(0.0, way.y - way.x) * params.cell_m;
+                }
+                let both = both_ways(tau_n, depth_ahead);
+                let lit = share[m] * segment.sharp;
+                let on = max(lit * both.on - unscattered, Spectrum(0.0));
+                scattered.forward += power * (on * backward_phase(0.0, mu) + lit * both.back * backward_phase(1.0, -mu));
+            }
         }
     }
     scattered.single *= albedo;

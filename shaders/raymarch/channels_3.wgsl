@@ -1,6 +1,7 @@
 // What a march evaluates for each channel: here for three.
 
 #import "lib/transmittance.wgsl"
+#import "lib/streams.wgsl"
 
 // (1 - exp(-x)) / x, where the exponential is known.
 fn per_channel_mean(x: Spectrum, exp_x: Spectrum) -> Spectrum {
@@ -24,4 +25,21 @@ fn exp_of(x: Spectrum) -> Spectrum {
         return Spectrum(exp(x.x));
     }
     return exp(x);
+}
+
+// Of light 1 that goes to and fro along its line: what goes on, and what comes back.
+struct BothWays {
+    on: Spectrum,
+    back: Spectrum,
+}
+
+fn both_ways(tau: f32, ahead: f32) -> BothWays {
+    var ways: BothWays;
+    for (var c = 0u; c < 3u; c += 1u) {
+        let both = streams(params.g, params.albedo[c], tau, ahead);
+        let decayed = exp(-both.kappa * tau);
+        ways.on[c] = decayed * both.on;
+        ways.back[c] = decayed * both.back;
+    }
+    return ways;
 }

@@ -92,6 +92,8 @@ pub struct OracleBeam {
     pub light: BeamLight,
     /// Unscaled optical depth from the light, at the cells' corners.
     pub tau_corners: Field<f64>,
+    /// The depth that is ahead of it there, where light goes to and fro along it.
+    pub ahead_corners: Option<Field<f64>>,
     /// What of its forward light the environment's stack carries instead.
     pub window: Option<Window>,
 }

@@ -22,7 +22,7 @@ use crate::graph::{CancelToken, Inputs, Moment, Params, PortType, Value};
 use crate::light::{Light, Ordinate, Ordinates};
 use crate::volume::Lattice;
 use crate::volume::field::Field;
-use crate::wire::{Beam, Beams, Medium, Place, Residual, occupancy};
+use crate::wire::{Beam, Beams, Medium, Place, Residual, TauAtlas, occupancy};
 
 mod fire;
 
@@ -324,7 +324,19 @@ pub fn oracle_light(beam: &Beam, channel: usize) -> BeamLight {
 
 /// Optical depths at the corners, for each beam.
 pub fn taus(gpu: &Gpu, beams: &Beams) -> Vec<Field<f64>> {
-    let Some(tau) = &beams.tau else {
+    depths(gpu, beams, beams.tau.as_ref())
+}
+
+/// Of each beam the depths that are ahead of it at the corners, where light comes back along it.
+pub fn aheads(gpu: &Gpu, beams: &Beams) -> Vec<Option<Field<f64>>> {
+    match &beams.ahead {
+        Some(ahead) => depths(gpu, beams, Some(ahead)).into_iter().map(Some).collect(),
+        None => vec![None; beams.beams.len()],
+    }
+}
+
+fn depths(gpu: &Gpu, beams: &Beams, atlas: Option<&TauAtlas>) -> Vec<Field<f64>> {
+    let Some(tau) = atlas else {
         assert!(beams.beams.is_empty(), "depths were left out");
         return Vec::new();
     };

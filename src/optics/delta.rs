@@ -3,7 +3,8 @@
 //!
 //! For g ≥ 0 the share f = g² goes straight on (delta–Eddington; Joseph, Wiscombe, Weinman 1976):
 //! g* = (g − f)/(1 − f) = g/(1 + g), sigma_s* = sigma_s (1 − f), sigma_t* = sigma_a + sigma_s*. The
-//! transport cross section sigma_a + sigma_s (1 − g) is unchanged. For g < 0 nothing is scaled. All
+//! transport cross section sigma_a + sigma_s (1 − g) is unchanged. For g < 0 nothing is scaled: of beams alone a share
+//! turns back (`backward.rs`). All
 //! members are ratios to sigma_t, so that one set serves a whole medium. Tested by that invariant.
 
 /// What delta scaling makes of a medium, relative to its extinction sigma_t.

@@ -5,6 +5,7 @@
 //! `shaders/lib` are their twins in f32 and are compared with them. Sources and equations stand in
 //! the modules.
 
+pub mod backward;
 pub mod blackbody;
 pub mod delta;
 pub mod directions;

@@ -21,7 +21,8 @@ use crate::graph::Decision;
 pub struct Gathering {
     /// Beams that the march would look up.
     pub n_beams: usize,
-    /// Whether all are parallel, with depths at corners that no surface hides and no peak widens.
+    /// Whether all are parallel, with depths at corners that no surface hides, no peak widens and whose
+    /// light does not come back.
     pub is_plain: bool,
     /// Whether the medium is a shape in closed form.
     pub is_closed: bool,
@@ -66,7 +67,7 @@ pub fn gathering(facts: Gathering, prune: bool) -> (bool, Decision) {
     let kept = |reason: &str| (false, Decision::kept(RULE, what, reason, data.clone()));
     match () {
         () if !prune => kept("everything is modeled"),
-        () if !facts.is_plain => kept("lights have places, shadows, or peaks that widen"),
+        () if !facts.is_plain => kept("lights have places, shadows, peaks that widen, or ways back"),
         () if facts.is_closed => kept("a shape's depths are known at every place"),
         () if !facts.fits => kept("the device has no room for what would be gathered"),
         () if facts.gathered_bytes >= facts.looked_up_bytes => kept("there are more corners than steps"),

@@ -23,8 +23,8 @@ mod spherical;
 pub use depths::{DepthFacts, Depths, SCAN_ERROR, depths};
 pub use gathering::{GATHERING_ERROR, Gathering, gathering};
 pub use rules::{
-    Colors, Split, beams, bounce, channels, closed_form, constant_light, directions, empty_space,
-    forward_peak, lobes, number, one_depth, residual, split, stack, three_channels,
+    Colors, Split, backward_peak, beams, bounce, channels, closed_form, constant_light, directions,
+    empty_space, forward_peak, lobes, number, one_depth, residual, split, stack, three_channels,
 };
 pub use scattering::{ERROR_TARGET, Lit, Scattering, scattering};
 pub use spherical::{Points, Spherical, spherical};

@@ -12,7 +12,8 @@
 //! was scattered once at least ∫ sigma_s E e^{−2T} min HG e^{−tau\*}, min HG = (1 − |g|)/(1 + |g|)²/4π, and their
 //! ratio is at most (1 − f) Λ · Λp/(1 − Λp) · e^{2T} (1 + |g|)²/(1 − |g|). That holds for parallel light that
 //! nothing hides: a shadow has no light that was scattered once. (The phase that `prefilter` leaves to
-//! ordinates is nowhere below min HG.)
+//! ordinates is nowhere below min HG. Of g < 0 what turns straight back is no residual: f is 0 here, and the first
+//! source, (1 − g²)(E₊ + E₋) ≤ (1 − g⁴) E, less than E.)
 
 use crate::graph::Decision;
 use crate::light::chromaticity;

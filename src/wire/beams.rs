@@ -53,6 +53,10 @@ pub struct Beams {
     pub widens: bool,
     /// Depths by which E\* = E exp(−k tau) where the peak widens; without them, those of `tau`.
     pub peak: Option<TauAtlas>,
+    /// Whether light goes to and fro along parallel beams (`optics/backward.rs`).
+    pub returns: bool,
+    /// The depths that are ahead of such light at the corners; `None` also where a run was only foretold.
+    pub ahead: Option<TauAtlas>,
     /// The last so many of the beams have no depths at corners, but on grids of their own.
     pub n_radial: usize,
     /// Those grids; `None` where there are none, or a run was only foretold.
@@ -67,6 +71,8 @@ pub struct Depths {
     pub tau: TauAtlas,
     /// Of the light that is counted as not scattered: the same, where the peak does not widen.
     pub star: TauAtlas,
+    /// Ahead of the light, where it comes back; else nothing that is read.
+    pub ahead: TauAtlas,
 }
 
 /// Optical depths at the corners of cells. One or two beams have a 32-bit texel each; of more, four share a
@@ -98,6 +104,14 @@ mirror! {
 }
 
 impl Beam {
+    /// The same light the other way; of a point light itself.
+    pub fn reversed(&self) -> Self {
+        match self.place {
+            Place::Parallel(direction) => Self { place: Place::Parallel(-direction), ..*self },
+            Place::Point(_) => *self,
+        }
+    }
+
     /// For the shaders, with the power of the channels that are solved.
     pub fn texel(&self, power: [f64; 3]) -> BeamTexel {
         let (place, point) = match self.place {
@@ -235,6 +249,8 @@ impl Beams {
             has_shadows: false,
             widens: false,
             peak: None,
+            returns: false,
+            ahead: None,
             n_radial: 0,
             radial: None,
             fields: Vec::new(),
@@ -288,10 +304,10 @@ impl Beams {
         Ok(self)
     }
 
-    /// Whether all are parallel, lit by one depth at each corner.
+    /// Whether all are parallel, lit by one depth at each corner and from one side.
     pub fn is_plain(&self) -> bool {
         let is_parallel = |beam: &Beam| matches!(beam.place, Place::Parallel(_));
-        !self.has_shadows && !self.widens && self.beams.iter().all(is_parallel)
+        !self.has_shadows && !self.widens && !self.returns && self.beams.iter().all(is_parallel)
     }
 
     /// Beams whose depths stand at corners.
@@ -345,7 +361,8 @@ impl Beams {
             None => TauAtlas::new(gpu, &Lattice { dims: [0; 3], ..self.lattice.clone() }, 0)?,
         };
         let star = self.peak.clone().unwrap_or_else(|| tau.clone());
-        Ok(Depths { tau, star })
+        let ahead = self.ahead.clone().unwrap_or_else(|| tau.clone());
+        Ok(Depths { tau, star, ahead })
     }
 
     /// Packs of four are copied whole: a part whose number of beams is no multiple of 4 is filled up with
@@ -378,8 +395,11 @@ impl Beams {
         let tau = Some(joined(|depths| &depths.tau)?);
         let has_peak = parts.iter().any(|part| part.peak.is_some());
         let peak = if has_peak { Some(joined(|depths| &depths.star)?) } else { None };
+        let has_ahead = parts.iter().any(|part| part.ahead.is_some());
+        let ahead = if has_ahead { Some(joined(|depths| &depths.ahead)?) } else { None };
         let has_shadows = parts.iter().any(|part| part.has_shadows);
         let widens = parts.iter().any(|part| part.widens);
-        Ok(Self { tau, peak, has_shadows, widens, ..Self::new(lattice, beams) })
+        let returns = parts.iter().any(|part| part.returns);
+        Ok(Self { tau, peak, ahead, has_shadows, widens, returns, ..Self::new(lattice, beams) })
     }
 }

@@ -94,7 +94,7 @@ march
   kept   the forward peak                     matter scatters forward (g = 0.6)
   kept   the residual                         it holds what was scattered more than once (lit)
   kept   directions of lobes                  scattering keeps some of the direction (g = 0.6)
-  kept   looking up every beam at every step  lights have places, shadows, or peaks that widen (2 beams)
+  kept   looking up every beam at every step  lights have places, shadows, peaks that widen, or ways back (2 beams)
   empty  input surfaces                       only the medium is seen";
 
 #[test]

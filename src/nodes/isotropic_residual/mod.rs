@@ -39,7 +39,7 @@ pub(super) const KIND: NodeKind =
 
 static SPEC: NodeSpec = NodeSpec {
     id: "isotropic_residual",
-    version: 1,
+    version: 2,
     category: Category::Transport,
     purpose: "Multiple scattering: light that has lost its direction, as one lobe a cell.",
     doc: "Solves for all light that has been scattered out of the beams or is emitted, by sweeps along lines of the grid from coarse to fine. \

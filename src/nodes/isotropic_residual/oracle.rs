@@ -19,6 +19,7 @@ use std::f64::consts::PI;
 use glam::DVec3;
 
 use crate::nodes::oracle_scene::{BeamLight, OracleMedium};
+use crate::optics::backward::{Streams, g_star};
 use crate::optics::directions::LineSet;
 use crate::volume::field::Field;
 
@@ -52,6 +53,26 @@ impl Sources {
             let cell = DVec3::from_array(mean.index_of(idx).map(|i| i as f64));
             self.q0.data[idx] += scattered;
             self.q1.data[idx] += scaled.g_star * scattered * light.spread() * light.direction_at(cell);
+        }
+    }
+
+    /// The same where light goes to and fro along the beam: `tau` and `ahead` are the depths behind and before it
+    /// at the cells, `mean` that of e^{−kappa tau}.
+    pub fn add_returning_beam(
+        &mut self,
+        medium: &OracleMedium,
+        light: &BeamLight,
+        mean: &Field<f64>,
+        [tau, ahead]: [&Field<f64>; 2],
+    ) {
+        let g = medium.g;
+        for (idx, sigma_t) in medium.sigma_t.data.iter().enumerate() {
+            let Streams { on, back, .. } = Streams::new(medium.albedo, g, tau.data[idx], ahead.data[idx]);
+            let leaving = sigma_t * medium.albedo * (1.0 - g * g) * light.power() * mean.data[idx];
+            let cell = DVec3::from_array(mean.index_of(idx).map(|i| i as f64));
+            self.q0.data[idx] += leaving * (on + back);
+            self.q1.data[idx] +=
+                g_star(g) * leaving * (on - back) * light.spread() * light.direction_at(cell);
         }
     }
 

@@ -61,10 +61,13 @@ pub(super) fn sources(
         Bind::Texture(&depths.star.texture),
         Bind::Buffer(&list),
         Bind::Texture(&glow.cells),
+        Bind::Texture(&depths.ahead.texture),
     ];
     let [pack, format] = depths.tau.choices();
     let emission = medium.emission.is_some().to_string();
-    let choices = [pack, format, ("emission", emission), ("grey", medium.is_grey().to_string())];
+    let returns = beams.ahead.is_some().to_string();
+    let choices =
+        [pack, format, ("emission", emission), ("grey", medium.is_grey().to_string()), ("returns", returns)];
     let stage = gpu.stage("isotropic_residual/sources", &choices)?;
     for layers in Bands::new(dims[2], dims[2]) {
         let params = SourceParams { first: layers.start as u32, ..params };

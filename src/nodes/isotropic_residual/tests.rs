@@ -15,19 +15,35 @@ use crate::nodes::oracle_scene::corners::HIDDEN;
 use crate::nodes::principal_propagation::oracle::mean_irradiance;
 use crate::nodes::spherical_propagation::oracle::mean_irradiance_point;
 use crate::nodes::testing::{
-    Filling, Fire, Scene, assert_close, assert_layout, filtered_times, flat, full_output, gpu, largest,
-    layers, oracle_light, output, point, run, states, sun, taus, with_run,
+    Filling, Fire, Scene, aheads, assert_close, assert_layout, filtered_times, flat, full_output, gpu,
+    largest, layers, oracle_light, output, point, run, states, sun, taus, with_run,
 };
+use crate::optics::backward::Streams;
 use crate::optics::directions::LineSet;
 use crate::volume::field::Field;
 use crate::wire::{Beam, Beams, Channels, Medium, Place, Residual, TauAtlas};
 
+/// Means of the corners of each cell.
+fn mean_of_corners(corners: &Field<f64>) -> Field<f64> {
+    Field::from_fn(corners.dims.map(|n| n - 1), |cell| {
+        let corner = |n: usize| corners.at(std::array::from_fn(|axis| cell[axis] + (n >> axis & 1)));
+        (0..8).map(corner).sum::<f64>() / 8.0
+    })
+}
+
 /// The oracle's sources of one channel, from the optical depths that the GPU stored.
-fn oracle_sources(scene: &Scene, channel: usize, beams: &Beams, taus: &[Field<f64>]) -> oracle::Sources {
+fn oracle_sources(gpu: &Gpu, scene: &Scene, channel: usize, beams: &Beams) -> oracle::Sources {
     let medium = scene.oracle(channel);
     let mut sources = oracle::Sources::new(scene.sigma_t.dims, beams.ambient[channel]);
     let k = medium.scaled().k;
-    for (beam, tau) in beams.beams.iter().zip(taus) {
+    for ((beam, tau), ahead) in beams.beams.iter().zip(&taus(gpu, beams)).zip(&aheads(gpu, beams)) {
+        if let (Some(ahead), Place::Parallel(direction)) = (ahead, beam.place) {
+            let kappa = Streams::new(medium.albedo, medium.g, 0.0, 0.0).kappa;
+            let mean = mean_irradiance(tau, kappa, direction);
+            let at_cells = [tau, ahead].map(mean_of_corners);
+            sources.add_returning_beam(&medium, &oracle_light(beam, channel), &mean, at_cells.each_ref());
+            continue;
+        }
         let mean = match beam.place {
             Place::Parallel(direction) => mean_irradiance(tau, k, direction),
             Place::Point(position) => mean_irradiance_point(tau, k, medium.h, position),
@@ -77,9 +93,8 @@ fn sources_of_suns_are_the_oracles() {
             let scene = Scene { g, albedo, ..Scene::new([9, 6, 5], filling, 8.0) };
             let medium = scene.medium(gpu);
             let beams = scene.propagate(gpu, &medium, &suns(albedo[0] != albedo[1]), [0.0; 3]);
-            let taus = taus(gpu, beams.get());
             for (channel, found) in gpu_sources(gpu, &medium, &beams).iter().enumerate() {
-                let expected = oracle_sources(&scene, channel, beams.get(), &taus);
+                let expected = oracle_sources(gpu, &scene, channel, beams.get());
                 let q0: Vec<f64> = found.data.iter().map(|q| q.x).collect();
                 let what = format!("g {g} {filling:?} channel {channel}");
                 // e^-x is 3 + 2x ulps off, x under 20; the other steps are a dozen roundings; differences
@@ -110,8 +125,7 @@ fn sources_of_point_lights_are_the_oracles() {
         (DVec3::new(4.3, 3.1, 2.7), 0.02),
     ] {
         let beams = scene.propagate(gpu, &medium, &[point(position, 2.0)], [0.0; 3]);
-        let taus = taus(gpu, beams.get());
-        let expected = oracle_sources(&scene, 0, beams.get(), &taus);
+        let expected = oracle_sources(gpu, &scene, 0, beams.get());
         let found = gpu_sources(gpu, &medium, &beams).remove(0);
         for (idx, (found, expected)) in found.data.iter().zip(&expected.q0.data).enumerate() {
             let cell = DVec3::from_array(scene.sigma_t.index_of(idx).map(|i| i as f64));
@@ -132,7 +146,7 @@ fn sources_in_shadows_are_the_oracles() {
         let beams = scene.propagate_behind(gpu, &medium, &lights, [0.0; 3], &[&plate]);
         let taus = taus(gpu, beams.get());
         assert!(taus.iter().all(|tau| tau.data.contains(&HIDDEN)), "no shadow says nothing");
-        let expected = oracle_sources(&scene, 0, beams.get(), &taus).q0.data;
+        let expected = oracle_sources(gpu, &scene, 0, beams.get()).q0.data;
         let found: Vec<f64> = gpu_sources(gpu, &medium, &beams)[0].data.iter().map(|q| q.x).collect();
         // As without shadows.
         assert_close("Q0", &found, &expected, 1e-5, 1e-12 * largest(&expected));
@@ -174,12 +188,11 @@ fn assert_solved(
     };
     let medium = scene.medium(gpu);
     let beams = scene.propagate(gpu, &medium, lights, ambient);
-    let taus = taus(gpu, beams.get());
     let params = json!({ "quality": name, "directions": lines.count() });
     let found = residual(gpu, params, &medium, &beams);
     let channels = found.get::<Residual>().channels;
     for (channel, found) in states(gpu, &found).iter().enumerate() {
-        let level = Level::new(&scene.oracle(channel), oracle_sources(scene, channel, beams.get(), &taus));
+        let level = Level::new(&scene.oracle(channel), oracle_sources(gpu, scene, channel, beams.get()));
         let solved = solve(level, Options { quality, lines, scheme: Scheme::Diamond });
         let expected: Vec<f64> = flat(&solved.state).iter().map(|x| x / channels.color[channel]).collect();
         // Lobes are stored in steps of 1e-6 of phi; sources are 1e-5 off at worst, where they are weakest;
@@ -264,12 +277,11 @@ fn a_fire_gives_each_cell_the_mean_of_its_points() {
     let medium = fire.medium(gpu);
     for lights in [vec![], suns(true)] {
         let beams = fire.scene.propagate(gpu, &medium, &lights, [0.0; 3]);
-        let taus = taus(gpu, beams.get());
         let found = gpu_sources(gpu, &medium, &beams);
         assert_eq!(found.len(), 3);
         for (channel, found) in found.iter().enumerate() {
             let emission = fire.oracle(channel);
-            let mut expected = oracle_sources(&fire.scene, channel, beams.get(), &taus);
+            let mut expected = oracle_sources(gpu, &fire.scene, channel, beams.get());
             expected.add_emission(&Field::from_fn([48; 3], |point| {
                 emission.at(DVec3::from_array(point.map(|n| (n as f64 - 1.0) / 3.0)))
             }));
@@ -375,7 +387,7 @@ fn packs_of_beams_beyond_a_column_are_found() {
     let taus = taus(gpu, beams.get());
     assert_eq!(taus[0], taus[3]);
     assert_eq!(taus[1], taus[4]);
-    let expected = oracle_sources(&scene, 0, beams.get(), &taus);
+    let expected = oracle_sources(gpu, &scene, 0, beams.get());
     let found: Vec<f64> = gpu_sources(gpu, &medium, &beams)[0].data.iter().map(|q| q.x).collect();
     assert_close("q0", &found, &expected.q0.data, 1e-5, 1e-12);
 }
@@ -420,7 +432,7 @@ fn layouts_are_those_of_the_shaders() {
     assert_layout::<SourceParams>(
         "isotropic_residual/sources.wgsl",
         "SourceParams",
-        &[("pack", "4"), ("emission", "true"), ("grey", "true")],
+        &[("pack", "4"), ("emission", "true"), ("grey", "true"), ("returns", "true")],
     );
     let format = [("format", "r32float")];
     assert_layout::<solver::RestrictParams>("isotropic_residual/restrict.wgsl", "RestrictParams", &format);

@@ -22,11 +22,12 @@ pub(super) const KIND: NodeKind =
 
 static SPEC: NodeSpec = NodeSpec {
     id: "principal_propagation",
-    version: 1,
+    version: 2,
     category: Category::Transport,
     purpose: "Carries suns and principal ordinates through the medium.",
     doc: "For every ordinate the optical depth that its light has come through, at the corners of the medium's cells. \
-          What scatters out of a beam is the residual's. Behind surfaces there is no light.",
+          What scatters out of a beam is the residual's. Where g < 0 also the depth that is still before the light, for what \
+          turns straight back and goes to and fro; not with surfaces. Behind surfaces there is no light.",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what the light travels through"),
         PortSpec::new("ordinates", PortType::Ordinates, "the light"),
@@ -59,6 +60,7 @@ struct Plan {
     is_carried: bool,
     depths: Depths,
     widens: bool,
+    returns: bool,
     report: Report,
 }
 
@@ -93,8 +95,8 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
     };
     let (depths, decision) = planner::depths(facts, run.prune);
     let asks_for_widening = run.params.text("peak") == "widening";
-    let mut widens = false;
-    let mut stages = Vec::new();
+    let (mut widens, mut returns) = (false, false);
+    let mut stages: Vec<StageWork> = Vec::new();
     if is_carried {
         decisions.extend([planner::one_depth(beams.len()), decision]);
         if asks_for_widening {
@@ -102,9 +104,20 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
             widens = has_peak;
             decisions.push(decision);
         }
+        if medium.g < 0.0 {
+            let (comes_back, decision) =
+                planner::backward_peak(medium.g, run.inputs.many::<Mesh>("surfaces").len());
+            returns = comes_back;
+            decisions.push(decision);
+        }
         match &depths {
             Depths::Walk => stages.push(walk::work(medium, &beams)),
             Depths::Scan(which) => stages.extend(scan::work(medium, &beams, which, layout.pack)),
+        }
+        for stage in stages.iter_mut().filter(|_| returns) {
+            // The depths ahead as well.
+            stage.runs *= 2;
+            stage.moved_bytes = stage.moved_bytes.map(|bytes| 2 * bytes);
         }
         stages.extend(widens.then_some(StageWork {
             stage: "widening",
@@ -113,7 +126,7 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
         }));
         stages.extend(shadow::work(run, beams.len()));
     }
-    let n_atlases = u64::from(is_carried) * (1 + u64::from(widens));
+    let n_atlases = u64::from(is_carried) * (1 + u64::from(widens) + u64::from(returns));
     let report = Report {
         decisions,
         cells: Some(medium.lattice.dims),
@@ -121,7 +134,7 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
         stages,
         ..Report::default()
     };
-    Ok(Plan { beams, is_carried, depths, widens, report })
+    Ok(Plan { beams, is_carried, depths, widens, returns, report })
 }
 
 fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
@@ -130,14 +143,20 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     if is_literal(run)? {
         return literal_scheme(run, medium, light);
     }
-    let Plan { beams, is_carried, depths, widens, report } = plan(run)?;
+    let Plan { beams, is_carried, depths, widens, returns, report } = plan(run)?;
     run.tell(report);
     let mut carried = Beams { ambient: light.ambient, ..Beams::new(&medium.lattice, beams) };
     if is_carried {
-        let tau = match depths {
-            Depths::Scan(which) => scan::scan(run, medium, &carried.beams, &which)?,
-            Depths::Walk => walk::walk(run, medium, &carried.beams)?,
+        let depths_of = |beams: &[Beam]| match &depths {
+            Depths::Scan(which) => scan::scan(run, medium, beams, which),
+            Depths::Walk => walk::walk(run, medium, beams),
         };
+        let tau = depths_of(&carried.beams)?;
+        if returns {
+            let reversed: Vec<Beam> = carried.beams.iter().map(Beam::reversed).collect();
+            carried.returns = true;
+            carried.ahead = Some(depths_of(&reversed)?);
+        }
         if widens {
             let surfaces = Surfaces::new(run.gpu, &medium.lattice, &run.inputs.many::<Mesh>("surfaces"))?;
             carried.widens = true;
@@ -146,7 +165,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         carried.has_shadows = shadow::cast(run, medium, &carried.beams, &tau)?;
         carried.tau = Some(tau);
     }
-    let atlases = [&carried.tau, &carried.peak].into_iter().flatten();
+    let atlases = [&carried.tau, &carried.peak, &carried.ahead].into_iter().flatten();
     let bytes = atlases.map(|atlas| atlas.texture.bytes()).sum();
     Ok(vec![Value::new(PortType::Beams, bytes, carried)])
 }
@@ -165,6 +184,7 @@ fn foretell(run: &Run) -> Result<Vec<Value>, NodeError> {
         run.tell(plan.report);
         beams.beams = plan.beams;
         beams.widens = plan.is_carried && plan.widens;
+        beams.returns = plan.is_carried && plan.returns;
         beams.has_shadows = plan.is_carried && shadow::is_cast(run);
     }
     Ok(vec![Value::new(PortType::Beams, 0, beams)])
@@ -197,3 +217,6 @@ fn literal_scheme(run: &Run, medium: &Medium, light: &Ordinates) -> Result<Vec<V
         Beams { fields: vec![field], ambient: light.ambient, ..Beams::new(&medium.lattice, Vec::new()) };
     Ok(vec![Value::new(PortType::Beams, bytes, beams)])
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,6 +1,7 @@
 //! `raymarch`: the picture (DESIGN 6.5).
 //!
-//! Along each view ray: exact single scattering of the beams, what their forward peak adds (the table K),
+//! Along each view ray: exact single scattering of the beams, what their forward peak adds (the table K) or for
+//! g < 0 what goes to and fro along them (`optics/backward.rs`),
 //! the residual lobe, emission, and what stands behind the medium. Pixels are computed in bands of rows, so that a
 //! picture of any size fits and a cancel is heard.
 
@@ -16,7 +17,7 @@ use crate::graph::{Category, NodeError, NodeSpec, ParamSpec, PortSpec, PortType,
 use crate::light::environment::STACK_X;
 use crate::mirror;
 use crate::optics::delta::DeltaScaled;
-use crate::optics::peak;
+use crate::optics::{backward, peak};
 use crate::wire::{
     Beams, Channels, Depths, Emission, Heat, Medium, Place, Residual, ShapeTexel, SurfaceLight, Surfaces,
 };
@@ -34,11 +35,11 @@ pub(super) const KIND: NodeKind =
 
 static SPEC: NodeSpec = NodeSpec {
     id: "raymarch",
-    version: 3,
+    version: 4,
     category: Category::Image,
     purpose: "Marches the camera's rays through the medium: the picture.",
     doc: "Layers: beauty, alpha (coverage), depth (mean distance of what is seen [m], 0 where nothing is), single (light scattered \
-          once), forward (light of the forward peak), residual (light scattered into all directions), emission (of the medium \
+          once), forward (light of the forward peak; where g < 0 light that went to and fro along its beam), residual (light scattered into all directions), emission (of the medium \
           itself), surface (light of meshes).",
     inputs: &[
         PortSpec::new("medium", PortType::Medium, "what is seen"),
@@ -137,6 +138,7 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
     let dark = gpu.texture3("no residual", [1; 3], Format::Rgba32Float, "")?;
     let moments = residual.map_or(&dark, |residual| &residual.moments);
     let table = peak_texture(gpu, medium.g)?;
+    let phases = backward_texture(gpu, medium.g)?;
     let (clamp, around) = (gpu.linear_sampler(), gpu.latlong_sampler());
     let [flame, temperature, blackbodies] = emission.grids();
     let nothing = gpu.buffer_from("no light on surfaces", &[[0.0_f32; 4]; 2], "")?;
@@ -169,6 +171,8 @@ fn run(run: &Run) -> Result<Vec<Value>, NodeError> {
         Bind::Texture(&radial),
         Bind::Buffer(&radial_lights),
         Bind::Texture(&sums),
+        Bind::Texture(&depths.ahead.texture),
+        Bind::Texture(&phases),
     ];
 
     let stage = gpu.stage("raymarch", &choices(&plan, medium, &beams, residual, &backdrop, &surfaces))?;
@@ -203,7 +207,7 @@ fn choices(
     residual: Option<&Residual>,
     backdrop: &Backdrop,
     surfaces: &Surfaces,
-) -> [(&'static str, String); 20] {
+) -> [(&'static str, String); 21] {
     let points = beams.beams.iter().any(|beam| matches!(beam.place, Place::Point(_)));
     let gathered = residual.and_then(|residual| residual.surface_light.as_ref());
     let n_beams = match beams.beams.len() {
@@ -224,6 +228,7 @@ fn choices(
         ("gathered", gathered.is_some().to_string()),
         ("radial", beams.radial.is_some().to_string()),
         ("widening", beams.peak.is_some().to_string()),
+        ("returns", beams.ahead.is_some().to_string()),
         ("emission", medium.emission.is_some().to_string()),
         ("beams", plan.has_beams.to_string()),
         ("sums", plan.has_sums.to_string()),
@@ -313,6 +318,15 @@ fn peak_texture(gpu: &Gpu, g: f64) -> Result<Texture, GpuError> {
         return gpu.texture2_from("no forward peak", [1; 2], Format::R32Float, &[0.0_f32], "");
     }
     gpu.texture2_from("forward peak", dims, Format::R32Float, &peak::peak_table(g), "")
+}
+
+/// The table of phases of light that goes to and fro.
+fn backward_texture(gpu: &Gpu, g: f64) -> Result<Texture, GpuError> {
+    if g >= 0.0 {
+        return gpu.texture2_from("no way back", [1; 2], Format::R32Float, &[0.0_f32], "");
+    }
+    let dims = [backward::COLUMNS, 2];
+    gpu.texture2_from("backward phases", dims, Format::R32Float, &backward::table(g), "")
 }
 
 #[cfg(test)]

@@ -7,7 +7,8 @@
 //! k sigma_t, W = ∫ e^{−k tau} sigma_t dl. A beam of unattenuated irradiance E_n then adds albedo E_n
 //! \[W0 e^{−tau_n} HG(g a0; mu) + (W e^{−k tau_n} − W0 e^{−tau_n}) K(albedo (tau_n + tau_c); mu)\],
 //! the residual W times its lobe per sigma_t, and emission its own at each step. The first term is exact single
-//! scattering, the second the forward peak (`optics/peak.rs`). Behind the medium stands e^{−k tau} of
+//! scattering, the second the forward peak (`optics/peak.rs`); where light goes to and fro along a beam, W0 times
+//! both streams and their phases in its place (`optics/backward.rs`). Behind the medium stands e^{−k tau} of
 //! a constant ambient radiance: e^{−tau} of it is seen sharp, the rest was scattered forward.
 //!
 //! In: index space as in `oracle_scene.rs`; sigma_t trilinear, zero outside; tau of the light
@@ -25,6 +26,7 @@ use glam::{DVec3, DVec4};
 
 use crate::light::Window;
 use crate::nodes::oracle_scene::{BeamLight, OracleBeam, OracleEmission, OracleMedium};
+use crate::optics::backward::{self, Streams};
 use crate::optics::lobe::SquaredLinearLobe;
 use crate::optics::peak;
 use crate::optics::phase::hg;
@@ -46,6 +48,8 @@ pub struct MarchScene<'a> {
     pub ambient: f64,
     /// `peak_table(g)` of the medium's g.
     pub peak_table: &'a [f32],
+    /// `backward::table(g)`, for beams along which light goes to and fro.
+    pub backward_table: &'a [f32],
     /// Longest step, in cells.
     pub step: f64,
     /// The least k of all channels: what is seen of a step in it says where a pair is lit.
@@ -205,6 +209,15 @@ fn light_of_beams(
         let [single, peak] = phases(scene, beam, p, ray_direction, tau_n + segment.tau_c);
         sums[0] += medium.albedo * irradiance * unscattered * single;
         sums[1] += medium.albedo * irradiance * deflected * peak;
+        if let Some(ahead) = &beam.ahead_corners {
+            let Streams { on, back, kappa } =
+                Streams::new(medium.albedo, medium.g, tau_n, ahead.trilinear_clamp(p + 0.5));
+            let lit = segment.sharp * (-kappa * tau_n).exp();
+            let mu = -beam.light.direction_at(p).dot(ray_direction);
+            let [even, odd] =
+                [(0, mu), (1, -mu)].map(|(row, mu)| backward::lookup(scene.backward_table, row, mu));
+            sums[1] += medium.albedo * irradiance * ((lit * on - unscattered) * even + lit * back * odd);
+        }
     }
     sums
 }

@@ -180,7 +180,9 @@ fn bytes_of_beams(plan: &Plan, medium: &Medium, beams: &[Beam]) -> f64 {
     let peak = if plan.has_peak { 4.0 * n_peaks as f64 } else { 0.0 };
     // Four of many share a texel of half floats.
     let depth = if beams.len() <= 2 { 4.0 } else { 2.0 };
-    beams.len() as f64 * (ARITHMETIC_OF_A_BEAM + depth + peak)
+    // The depth ahead and the phases of both streams.
+    let returns = if medium.g < 0.0 { depth + 8.0 } else { 0.0 };
+    beams.len() as f64 * (ARITHMETIC_OF_A_BEAM + depth + peak + returns)
         + beams.iter().filter(is_placed).count() as f64 * ARITHMETIC_OF_A_PLACE
 }
 

@@ -16,9 +16,10 @@ use crate::light::environment::{Environment, STACK_WAYS_AROUND};
 use crate::light::{Ordinate, Ordinates, Window};
 use crate::nodes::oracle_scene::OracleBeam;
 use crate::nodes::testing::{
-    Filling, Fire, Scene, assert_close, assert_layout, filtered, full_output, gpu, largest, oracle_light,
-    output, point, states, sun, taus,
+    Filling, Fire, Scene, aheads, assert_close, assert_layout, filtered, full_output, gpu, largest,
+    oracle_light, output, point, states, sun, taus,
 };
+use crate::optics::backward;
 use crate::optics::peak::peak_table;
 use crate::volume::Lattice;
 use crate::volume::field::Field;
@@ -76,10 +77,12 @@ fn with_march<T>(scene: &Scene, channel: usize, lit: &Lit, body: impl FnOnce(&Ma
     let emission = lit.fire.as_ref().map(|fire| fire.oracle(channel));
     let medium = scene.oracle(channel);
     let table = peak_table(scene.g);
-    let beams: Vec<OracleBeam> = (lit.beams.beams.iter().zip(&lit.taus))
-        .map(|(beam, tau)| OracleBeam {
+    let backward_table = backward::table(scene.g);
+    let beams: Vec<OracleBeam> = (lit.beams.beams.iter().zip(&lit.taus).zip(&lit.aheads))
+        .map(|((beam, tau), ahead)| OracleBeam {
             light: oracle_light(beam, channel),
             tau_corners: tau.clone(),
+            ahead_corners: ahead.clone(),
             window: beam.window,
         })
         .collect();
@@ -90,6 +93,7 @@ fn with_march<T>(scene: &Scene, channel: usize, lit: &Lit, body: impl FnOnce(&Ma
         emission: emission.as_ref(),
         ambient: lit.beams.ambient[channel],
         peak_table: &table,
+        backward_table: &backward_table,
         step: 0.5,
         least_k: (0..3).map(|c| scene.oracle(c).scaled().k).fold(1.0, f64::min),
     })
@@ -115,6 +119,7 @@ fn expected(scene: &Scene, channel: usize, lit: &Lit, rays: &[Ray]) -> Vec<March
 struct Lit {
     beams: Beams,
     taus: Vec<Field<f64>>,
+    aheads: Vec<Option<Field<f64>>>,
     /// For each of three channels.
     residual: Vec<Field<DVec4>>,
     /// What the medium is, if it glows.
@@ -145,6 +150,7 @@ fn assert_medium_seen(
     let lit = Lit {
         beams: beams.get::<Beams>().clone(),
         taus: taus(gpu, beams.get()),
+        aheads: aheads(gpu, beams.get()),
         residual: (0..3).map(state).collect(),
         fire,
     };
@@ -429,6 +435,7 @@ fn layouts_are_those_of_the_shader() {
             ("gathered", "true"),
             ("widening", "true"),
             ("emission", "true"),
+            ("returns", "true"),
             ("beams", "true"),
             ("sums", "true"),
             ("grey", "false"),

@@ -69,14 +69,13 @@ fn residuals_among_surfaces_are_the_oracles() {
         (0.2, Quality::Fast, LineSet::Lines50),
     ] {
         let beams = scene.propagate(gpu, &medium, &suns(false), [ambient; 3]);
-        let taus = taus(gpu, beams.get());
         let name = match quality {
             Quality::Thick => "thick",
             Quality::Fast => "fast",
             _ => "default",
         };
         let (found, _) = swept(gpu, &scene, &triangles, (&beams, ambient), (name, lines));
-        let level = Level::new(&scene.oracle(0), oracle_sources(&scene, 0, beams.get(), &taus));
+        let level = Level::new(&scene.oracle(0), oracle_sources(gpu, &scene, 0, beams.get()));
         let level = level.behind(triangles.iter().map(|corners| corners.map(|p| p + APART)).collect());
         let solved = solve(level, Options { quality, lines, scheme: Scheme::Diamond });
         assert!(solved.balance.into_surfaces > 0.05 * solved.balance.incoming(), "no wall says nothing");

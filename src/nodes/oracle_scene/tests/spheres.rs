@@ -7,6 +7,7 @@ use crate::nodes::oracle_scene::corners::corner_field;
 use crate::nodes::oracle_scene::{BeamLight, OracleBeam, OracleMedium};
 use crate::nodes::principal_propagation::oracle::mean_irradiance;
 use crate::nodes::raymarch::oracle::{MarchScene, Ray, march_through};
+use crate::optics::backward::{self, Streams};
 use crate::optics::peak::peak_table;
 use crate::volume::field::Field;
 
@@ -42,15 +43,33 @@ fn solved(g: f64, albedo: f64, tau: f64) -> (OracleMedium, Vec<OracleBeam>, Fiel
     let medium = OracleMedium { sigma_t, h, albedo, g };
     let light = BeamLight::Parallel { direction: DVec3::Z, irradiance: 1.0, spread: 1.0 };
     let tau_corners = corner_field(&medium.sigma_t, |corner| tau_to_light(tau, corner));
-    let mean = mean_irradiance(&tau_corners, medium.scaled().k, DVec3::Z);
     let mut sources = Sources::new([N; 3], 0.0);
-    sources.add_beam(&medium, &light, &mean);
+    let mut ahead_corners = None;
+    if g < 0.0 {
+        let ahead = corner_field(&medium.sigma_t, |corner| depth_ahead(tau, corner));
+        let mean = mean_irradiance(&tau_corners, Streams::new(albedo, g, 0.0, 0.0).kappa, DVec3::Z);
+        let center = |cell: [usize; 3]| DVec3::from_array(cell.map(|i| i as f64));
+        let depths = [
+            Field::from_fn([N; 3], |cell| tau_to_light(tau, center(cell))),
+            Field::from_fn([N; 3], |cell| depth_ahead(tau, center(cell))),
+        ];
+        sources.add_returning_beam(&medium, &light, &mean, depths.each_ref());
+        ahead_corners = Some(ahead);
+    } else {
+        let mean = mean_irradiance(&tau_corners, medium.scaled().k, DVec3::Z);
+        sources.add_beam(&medium, &light, &mean);
+    }
     let residual = solve(Level::new(&medium, sources), Quality::Default.options()).state;
-    (medium, vec![OracleBeam { light, tau_corners, window: None }], residual)
+    (medium, vec![OracleBeam { light, tau_corners, ahead_corners, window: None }], residual)
 }
 
 fn tau_to_light(tau: f64, p: DVec3) -> f64 {
     let length = inside_sphere(p, DVec3::NEG_Z).map_or(0.0, |[start, end]| end - start);
+    tau * length / N as f64
+}
+
+fn depth_ahead(tau: f64, p: DVec3) -> f64 {
+    let length = inside_sphere(p, DVec3::Z).map_or(0.0, |[start, end]| end - start);
     tau * length / N as f64
 }
 
@@ -61,6 +80,7 @@ fn mean_radiance(
     view: DVec3,
 ) -> f64 {
     let peak_table = peak_table(medium.g);
+    let backward_table = backward::table(medium.g);
     let scene = MarchScene {
         medium,
         beams,
@@ -68,6 +88,7 @@ fn mean_radiance(
         emission: None,
         ambient: 0.0,
         peak_table: &peak_table,
+        backward_table: &backward_table,
         step: 0.5,
         least_k: medium.scaled().k,
     };
@@ -105,14 +126,23 @@ fn shine_as_monte_carlo_says() {
         (0.5, 0.5, 10.0, [0.007421, 0.007331, 0.007924, 0.010309]),
         (0.9, 0.95, 2.0, [0.002164, 0.002747, 0.006000, 4.447957]),
         (0.9, 1.0, 10.0, [0.014538, 0.017397, 0.031386, 1.101970]),
+        (-0.3, 0.95, 2.0, [0.086911, 0.058919, 0.034311, 0.023512]),
+        (-0.5, 0.95, 2.0, [0.173426, 0.061922, 0.026798, 0.023958]),
+        (-0.5, 0.95, 10.0, [0.223908, 0.084179, 0.032993, 0.006527]),
+        (-0.8, 0.95, 2.0, [1.216885, 0.037434, 0.011682, 0.083419]),
     ];
     let oblique = DVec3::new(1.0, 0.0, 1.0).normalize();
     for (g, albedo, tau, means) in references {
         let sphere = solved(g, albedo, tau);
         // The figures that the solver must keep at 32 cells: views from the lit side and across,
-        // g ≤ 0.5 and 0.9; the dark side, thin and thick.
-        let lit = if g > 0.5 { 0.06 } else { 0.015 };
-        let dark = if tau > 2.0 { 0.09 } else { 0.015 };
+        // |g| ≤ 0.5 and above; the dark side, thin and thick, which 32 cells keep the less the more light turns back.
+        let lit = if g.abs() > 0.5 { 0.06 } else { 0.015 };
+        let dark = match tau > 2.0 {
+            true if g < 0.0 => 0.12,
+            true => 0.09,
+            false if g < -0.5 => 0.06,
+            false => 0.015,
+        };
         let views = [(DVec3::Z, lit), (oblique, lit), (DVec3::X, lit), (DVec3::NEG_Z, dark)];
         for ((view, tolerance), expected) in views.into_iter().zip(means) {
             let found = mean_radiance(tau, &sphere, view);

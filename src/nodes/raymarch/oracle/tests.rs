@@ -13,7 +13,7 @@ fn medium(dims: [usize; 3], sigma: f64, albedo: f64, g: f64) -> OracleMedium {
 
 fn beam(light: BeamLight) -> OracleBeam {
     // These tests give tau in closed form; the field is not read.
-    OracleBeam { light, tau_corners: Field::filled([1, 1, 1], f64::NAN), window: None }
+    OracleBeam { light, tau_corners: Field::filled([1, 1, 1], f64::NAN), ahead_corners: None, window: None }
 }
 
 fn scene<'a>(
@@ -23,7 +23,17 @@ fn scene<'a>(
     peak_table: &'a [f32],
 ) -> MarchScene<'a> {
     let least_k = medium.scaled().k;
-    MarchScene { medium, beams, residual, emission: None, ambient: 0.0, peak_table, step: 0.5, least_k }
+    MarchScene {
+        medium,
+        beams,
+        residual,
+        emission: None,
+        ambient: 0.0,
+        peak_table,
+        backward_table: &[],
+        step: 0.5,
+        least_k,
+    }
 }
 
 const ALONG_Z: Ray = Ray { origin: DVec3::new(1.5, 1.5, -10.0), direction: DVec3::Z };
@@ -205,7 +215,7 @@ fn fields_are_looked_up_where_they_stand() {
     let residual = constant_light([4, 4, 8], 0.0);
     let light = BeamLight::Parallel { direction: DVec3::X, irradiance: 1.0, spread: 1.0 };
     let tau_corners = Field::from_fn([5, 5, 9], |[_, _, z]| z as f64);
-    let beams = [OracleBeam { light, tau_corners, window: None }];
+    let beams = [OracleBeam { light, tau_corners, ahead_corners: None, window: None }];
     let table = peak::peak_table(0.0);
     let mut scene = scene(&medium, &beams, &residual, &table);
     scene.step = 0.01;

