@@ -146,7 +146,7 @@ fn all_gpu_time_belongs_to_a_node() {
     let solved = solve(&mut session, &document);
     let times = session.gpu().take_stage_times();
     let stages: Vec<&str> = times.iter().map(|time| time.stage.as_str()).collect();
-    assert!(stages.contains(&"merge beams"), "{stages:?}");
+    assert!(stages.contains(&"repack"), "{stages:?}");
     let of_stages: f64 = times.iter().map(|time| time.gpu_ms).sum();
     let of_nodes: f64 = solved.costs.iter().map(|cost| cost.gpu_ms).sum();
     // The same numbers in another order of addition.
