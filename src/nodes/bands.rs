@@ -10,12 +10,13 @@ use std::time::{Duration, Instant};
 
 /// What a submission should take at most: who waits for it hardly notices.
 const PATIENCE: Duration = Duration::from_millis(150);
-/// The first submission is this part of the largest.
+/// The first submission is this part of the largest, unless it is asked for.
 const FIRST: usize = 8;
 
 /// Ranges that cover 0..n one after the other. The time from one to the next is that of the submission between.
 pub(super) struct Bands {
     n: usize,
+    first: usize,
     most: usize,
     last: Range<usize>,
     since: Instant,
@@ -24,13 +25,19 @@ pub(super) struct Bands {
 impl Bands {
     /// Of 0..n, with no range longer than `most`.
     pub fn new(n: usize, most: usize) -> Self {
-        Self { n, most: most.max(1), last: 0..0, since: Instant::now() }
+        let most = most.max(1);
+        Self { n, first: most.div_ceil(FIRST), most, last: 0..0, since: Instant::now() }
+    }
+
+    /// The same with a first range of this length: where the largest one takes seconds.
+    pub fn beginning_with(self, first: usize) -> Self {
+        Self { first: first.clamp(1, self.most), ..self }
     }
 
     /// The next range, where the last one took so long.
     fn after(&mut self, took: Duration) -> Option<Range<usize>> {
         let len = match self.last.len() {
-            0 => self.most.div_ceil(FIRST),
+            0 => self.first,
             len => next_len(len, took, self.most),
         };
         let first = self.last.end;
@@ -75,6 +82,14 @@ mod tests {
             // Where nothing takes time there is one small band, and then the largest.
             assert!(took_ms > 0 || most == 0 || n_bands <= 1 + n.div_ceil(most), "{n} {most}: {n_bands}");
         }
+    }
+
+    #[test]
+    fn the_first_band_can_be_asked_for() {
+        for (asked, first) in [(5, 0..5), (0, 0..1), (1000, 0..100)] {
+            assert_eq!(Bands::new(100, 100).beginning_with(asked).after(Duration::ZERO), Some(first));
+        }
+        assert_eq!(Bands::new(100, 100).after(Duration::ZERO), Some(0..13));
     }
 
     #[test]

@@ -38,10 +38,11 @@ mirror! {
 pub(super) fn walk(run: &Run, medium: &Medium, beams: &[Beam]) -> Result<TauAtlas, NodeError> {
     let atlas = TauAtlas::new(run.gpu, &medium.lattice, beams.len())?;
     let sampler = run.gpu.linear_sampler();
-    // Layers of corners of all packs, one after the other: a GPU has many packs done in the time of a submission.
+    // Layers of corners of all packs, one after the other: a GPU has many packs done in the time of a submission, a
+    // processor takes a second for one.
     let n_layers = atlas.corners[2];
     let all = beams.len().div_ceil(atlas.pack) * n_layers;
-    for band in Bands::new(all, all) {
+    for band in Bands::new(all, all).beginning_with(n_layers.div_ceil(8)) {
         let mut recorder = run.gpu.recorder("walk to the light");
         for (pack, four) in beams.chunks(atlas.pack).enumerate() {
             let [start, end] =
