@@ -81,11 +81,15 @@ impl Bvh {
             Item { bounds: Bounds { low, high }, triangle: n as u32 }
         };
         let mut items: Vec<Item> = triangles.iter().enumerate().map(item).collect();
-        let mut bvh = Self::default();
+        Self::grown(&mut items)
+    }
+
+    fn grown(items: &mut [Item]) -> Self {
+        let mut tree = Self::default();
         if !items.is_empty() {
-            bvh.add(&mut items);
+            tree.add(items);
         }
-        bvh
+        tree
     }
 
     /// Adds a tree after the nodes that are there.
@@ -115,12 +119,7 @@ impl Bvh {
             let n_left = divide(items);
             let (left, right) = items.split_at_mut(n_left);
             if left.len().min(right.len()) > ALONE {
-                let grown = |items: &mut [Item]| {
-                    let mut tree = Self::default();
-                    tree.add(items);
-                    tree
-                };
-                let (left, right) = rayon::join(|| grown(left), || grown(right));
+                let (left, right) = rayon::join(|| Self::grown(left), || Self::grown(right));
                 self.append(&left);
                 self.append(&right);
             } else {

@@ -214,14 +214,11 @@ pub fn forward_peak(g: f64, prune: bool) -> (bool, Decision) {
     (false, Decision::left_out(RULE, "the forward peak", "nothing is scattered more forward than back", data))
 }
 
-/// Whether light goes to and fro along parallel beams, and with that what scatters backward has its peak.
+/// Whether light goes to and fro along parallel beams where g < 0, so that what scatters backward has its peak.
 pub fn backward_peak(g: f64, n_surfaces: usize) -> (bool, Decision) {
     const RULE: &str = "backward_peak";
     const WHAT: &str = "light to and fro along beams";
     let data = format!("g = {}, {}", number(g), count(n_surfaces, "surface"));
-    if g >= 0.0 {
-        return (false, Decision::left_out(RULE, WHAT, "nothing is scattered more back than forward", data));
-    }
     if n_surfaces > 0 {
         return (false, Decision::left_out(RULE, WHAT, "surfaces would not be lit by what comes back", data));
     }

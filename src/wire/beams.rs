@@ -104,6 +104,11 @@ mirror! {
 }
 
 impl Beam {
+    /// Whether its light comes from afar.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self.place, Place::Parallel(_))
+    }
+
     /// The same light the other way; of a point light itself.
     pub fn reversed(&self) -> Self {
         match self.place {
@@ -306,8 +311,7 @@ impl Beams {
 
     /// Whether all are parallel, lit by one depth at each corner and from one side.
     pub fn is_plain(&self) -> bool {
-        let is_parallel = |beam: &Beam| matches!(beam.place, Place::Parallel(_));
-        !self.has_shadows && !self.widens && !self.returns && self.beams.iter().all(is_parallel)
+        !self.has_shadows && !self.widens && !self.returns && self.beams.iter().all(Beam::is_parallel)
     }
 
     /// Beams whose depths stand at corners.
@@ -365,6 +369,11 @@ impl Beams {
         Ok(Depths { tau, star, ahead })
     }
 
+    /// Whether some are parallel, and none of them comes back.
+    fn goes_one_way(&self) -> bool {
+        !self.returns && self.beams.iter().any(Beam::is_parallel)
+    }
+
     /// Packs of four are copied whole: a part whose number of beams is no multiple of 4 is filled up with
     /// beams without power.
     fn concatenate(gpu: &Gpu, lattice: &Lattice, parts: &[&Beams]) -> Result<Self, GpuError> {
@@ -395,11 +404,11 @@ impl Beams {
         let tau = Some(joined(|depths| &depths.tau)?);
         let has_peak = parts.iter().any(|part| part.peak.is_some());
         let peak = if has_peak { Some(joined(|depths| &depths.star)?) } else { None };
-        let has_ahead = parts.iter().any(|part| part.ahead.is_some());
-        let ahead = if has_ahead { Some(joined(|depths| &depths.ahead)?) } else { None };
+        // Who looks at beams takes all parallel ones alike: where one went among surfaces, none comes back.
+        let returns = parts.iter().any(|part| part.returns) && !parts.iter().any(|part| part.goes_one_way());
+        let ahead = if returns { Some(joined(|depths| &depths.ahead)?) } else { None };
         let has_shadows = parts.iter().any(|part| part.has_shadows);
         let widens = parts.iter().any(|part| part.widens);
-        let returns = parts.iter().any(|part| part.returns);
         Ok(Self { tau, peak, ahead, has_shadows, widens, returns, ..Self::new(lattice, beams) })
     }
 }

@@ -55,8 +55,7 @@ pub(super) fn plan(run: &Run) -> Result<Plan, NodeError> {
             g: medium.g,
             tau_max: medium.tau_max,
             n_beams: lit().count(),
-            is_parallel: lit().all(|beam| matches!(beam.place, Place::Parallel(_)))
-                && !parts.iter().any(|part| part.has_shadows),
+            is_parallel: lit().all(Beam::is_parallel) && !parts.iter().any(|part| part.has_shadows),
             ambient,
             glows,
             has_surfaces,

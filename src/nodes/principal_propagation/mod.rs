@@ -114,10 +114,12 @@ fn plan(run: &Run) -> Result<Plan, NodeError> {
             Depths::Walk => stages.push(walk::work(medium, &beams)),
             Depths::Scan(which) => stages.extend(scan::work(medium, &beams, which, layout.pack)),
         }
-        for stage in stages.iter_mut().filter(|_| returns) {
+        if returns {
             // The depths ahead as well.
-            stage.runs *= 2;
-            stage.moved_bytes = stage.moved_bytes.map(|bytes| 2 * bytes);
+            for stage in &mut stages {
+                stage.runs *= 2;
+                stage.moved_bytes = stage.moved_bytes.map(|bytes| 2 * bytes);
+            }
         }
         stages.extend(widens.then_some(StageWork {
             stage: "widening",

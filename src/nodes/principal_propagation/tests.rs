@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::nodes::testing::{Filling, Scene, aheads, assert_close, gpu, sun, taus};
+use crate::nodes::testing::{Filling, Scene, aheads, assert_close, gpu, point, sun, taus};
 use crate::wire::{Beam, Beams};
 
 fn scene(g: f64) -> Scene {
@@ -60,5 +60,14 @@ fn merged_beams_keep_what_is_ahead() {
     for (at, expected) in [(0, &aheads(gpu, one.get())[0]), (4, &aheads(gpu, two.get())[0])] {
         let [found, expected] = [&found[at], expected].map(|depths| &depths.as_ref().unwrap().data[..]);
         assert_close("merged", found, expected, 1e-3, 1e-6);
+    }
+    // Beside light that does not come back, because it went among surfaces, none does; lamps never do.
+    let plate = scene.plate([2.0, 2.0], [5.0, 5.0], 3.0);
+    let behind = |light| scene.propagate_behind(gpu, &medium, &[light], [0.0; 3], &[&plate]);
+    for (other, returns) in
+        [(behind(sun(DVec3::Y, 1.0)), false), (behind(point(DVec3::splat(-3.0), 1.0)), true)]
+    {
+        let merged = Beams::merge(gpu, &scene.lattice(), &[one.get(), other.get()]).unwrap();
+        assert_eq!((merged.returns, merged.ahead.is_some()), (returns, returns));
     }
 }
